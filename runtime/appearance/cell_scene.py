@@ -8,7 +8,14 @@ from runtime.appearance.colours import colours_of
 from runtime.appearance.hand import hand_bodies, hand_shapes
 from runtime.appearance.own_meshes import own_meshes
 from runtime.appearance.scene import Mark, Scene, View
-from runtime.appearance.surroundings import obstacle_bodies, obstacle_shapes, part_bodies, part_shapes
+from runtime.appearance.surroundings import (
+    drawn_meshes,
+    mesh_names,
+    obstacle_bodies,
+    obstacle_shapes,
+    part_bodies,
+    part_shapes,
+)
 from runtime.appearance.untrusted import LONGEST_TEXT
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array
@@ -24,6 +31,7 @@ def scene_of(cell: CellSpec, points: Mapping[str, Array] = NO_POINTS) -> Scene:
     """
     spec = cell.robot
     own = own_meshes(spec.meshes)
+    names = mesh_names((*cell.obstacles, *cell.parts))
     return Scene(
         robot=spec.name[:LONGEST_TEXT],
         reach=reach_of(spec),
@@ -37,11 +45,11 @@ def scene_of(cell: CellSpec, points: Mapping[str, Array] = NO_POINTS) -> Scene:
             *arm_shapes(spec, {number for number, _, _ in own.links}),
             *mesh_shapes(own),
             *hand_shapes(cell.hand),
-            *part_shapes(cell.parts),
-            *obstacle_shapes(cell.obstacles),
+            *part_shapes(cell.parts, names),
+            *obstacle_shapes(cell.obstacles, names),
         ),
         colours=colours_of(spec.name),
-        meshes=MappingProxyType({name: mesh for _, name, mesh in own.links}),
+        meshes=MappingProxyType({**{name: mesh for _, name, mesh in own.links}, **drawn_meshes(names)}),
         frames=marks(cell.frames),
         points=marks(points),
         camera=None if cell.camera is None else View(position=cell.camera.position, target=cell.camera.target),

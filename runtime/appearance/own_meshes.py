@@ -11,7 +11,6 @@ from pathlib import Path
 import numpy as np
 
 from runtime.appearance.coarser import coarser
-from runtime.appearance.scene import MOST_MESHES
 from runtime.core.bounded_files import RefusedError, read_bounded, resolved_inside, stays_inside
 from runtime.core.frames import frozen
 from runtime.core.linear import matmul
@@ -21,6 +20,8 @@ from runtime.robot.model.spec import LinkMesh
 
 MOST_FACES = 30_000
 """Triangles of all meshes of a robot that are kept: about 0.3 MB in a log."""
+MOST_MESHES = 200
+"""Mesh files of a robot that are read."""
 MOST_COPIED = 100_000_000
 """Bytes of all mesh files that a copy of a model gets."""
 LARGEST = 20.0

@@ -31,7 +31,7 @@ DIGITS = 9
 """Digits of the JSON after the point: a nanometre, so that a chain of ten bodies is exact to far below 0.01 mm."""
 MESH_DIGITS = 5
 """Digits of the vertices of meshes, which only have to look right: a hundredth of a millimetre."""
-MOST_BODIES, MOST_SHAPES, MOST_MARKS, MOST_MESHES = 50_000, 250_000, 50_000, 200
+MOST_BODIES, MOST_SHAPES, MOST_MARKS, MOST_MESHES = 50_000, 250_000, 50_000, 300
 """Most bodies, shapes, frames or points, and meshes of a scene: more than the largest cell and points file have."""
 SMALLEST = 10.0**-DIGITS
 """Least size of a shape, and least reach, m: what is smaller is nothing in the JSON."""

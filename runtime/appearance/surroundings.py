@@ -1,13 +1,17 @@
 """What stands around a robot: obstacles, tables on legs, and parts."""
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from pathlib import PurePosixPath
 
 import numpy as np
 
+from runtime.appearance.coarser import coarser
 from runtime.appearance.scene import SceneBody, SceneJoint, Shape
 from runtime.appearance.solids import Z, box, cylinder
+from runtime.cell.body_mesh import BodyMesh
 from runtime.cell.cell import ObstacleSpec, PartSpec
 from runtime.core.frames import Array, pose
+from runtime.core.mesh import Mesh
 
 LEG = 0.045
 """Edge of a table's leg, m."""
@@ -15,8 +19,25 @@ LEG_INSET = 0.05
 """Distance of the middle of a leg from the edges of its table, m."""
 LOWEST_TABLE, THICKEST_TABLE = 0.15, 0.15
 """A box whose underside is higher than the one, and which is thinner than the other, m, is the top of a table."""
+MOST_FACES = 60_000
+"""Triangles of all meshes of parts and obstacles that are kept: about 0.6 MB in a log."""
 LEVEL = 0.999
 """Cosine of how far a top may lean and still stand on legs."""
+
+
+Names = Mapping[BodyMesh, str]
+"""The names that meshes have in a scene."""
+
+
+def mesh_names(bodies: Iterable[ObstacleSpec | PartSpec]) -> Names:
+    """Return a name for each mesh of parts and obstacles."""
+    meshes = dict.fromkeys(each.mesh for each in bodies if each.mesh is not None)
+    return {mesh: f"cell:{k}:{PurePosixPath(mesh.name).stem[:40]}" for k, mesh in enumerate(meshes)}
+
+
+def drawn_meshes(names: Names) -> dict[str, Mesh]:
+    """Return the meshes of a scene by their names, coarser where they are many."""
+    return dict(zip(names.values(), coarser([each.mesh for each in names], MOST_FACES), strict=True))
 
 
 def obstacle_bodies(obstacles: Sequence[ObstacleSpec]) -> list[SceneBody]:
@@ -27,17 +48,19 @@ def obstacle_bodies(obstacles: Sequence[ObstacleSpec]) -> list[SceneBody]:
     ]
 
 
-def obstacle_shapes(obstacles: Sequence[ObstacleSpec]) -> list[Shape]:
+def obstacle_shapes(obstacles: Sequence[ObstacleSpec], names: Names) -> list[Shape]:
     """Return the shape of each obstacle, and legs to the floor where it is a table."""
-    return [shape for each in obstacles for shape in _obstacle(each)]
+    return [shape for each in obstacles for shape in _obstacle(each, names)]
 
 
 def _name(obstacle: ObstacleSpec) -> str:
     return f"obstacle:{obstacle.name}"
 
 
-def _obstacle(obstacle: ObstacleSpec) -> list[Shape]:
+def _obstacle(obstacle: ObstacleSpec, names: Names) -> list[Shape]:
     name, size = _name(obstacle), obstacle.size
+    if obstacle.mesh is not None:
+        return [_meshed(name, names[obstacle.mesh], "obstacle", obstacle.name)]
     # without legs: a round top is rather a drum than a table
     if obstacle.shape == "cylinder":
         return [_upright(name, size, "obstacle", obstacle.name)]
@@ -68,14 +91,22 @@ def part_bodies(parts: Sequence[PartSpec]) -> list[SceneBody]:
     ]
 
 
-def part_shapes(parts: Sequence[PartSpec]) -> list[Shape]:
+def part_shapes(parts: Sequence[PartSpec], names: Names) -> list[Shape]:
     """Return the shape of each part."""
-    return [
-        _upright(_part_name(part), part.size, "part", part.name)
-        if part.shape == "cylinder"
-        else box(_part_name(part), np.eye(4), part.size, "part", part.name)
-        for part in parts
-    ]
+    return [_part(part, names) for part in parts]
+
+
+def _part(part: PartSpec, names: Names) -> Shape:
+    body = _part_name(part)
+    if part.mesh is not None:
+        return _meshed(body, names[part.mesh], "part", part.name)
+    if part.shape == "cylinder":
+        return _upright(body, part.size, "part", part.name)
+    return box(body, np.eye(4), part.size, "part", part.name)
+
+
+def _meshed(body: str, mesh: str, role: str, name: str) -> Shape:
+    return Shape(body=body, kind="mesh", X_body_shape=np.eye(4), size=(), role=role, name=name, mesh=mesh)
 
 
 def _upright(body: str, size: Array, role: str, name: str) -> Shape:

@@ -13,7 +13,8 @@ from typing import TypeVar
 
 import numpy as np
 
-from runtime.cell.cell_file import CellFile
+from runtime.cell.body_mesh import BodyMesh
+from runtime.cell.cell_file import CellFile, ObstacleFile, PartFile
 from runtime.cell.seam_sensor import SensorSpec
 from runtime.cell.signals import InputSpec
 from runtime.core.frames import Array, frozen, pose_from_xyzrpy
@@ -61,7 +62,7 @@ class HandSpec:
 class PartSpec:
     """A loose body: ``size`` (3,) m, true ``mass`` kg, ``X_world_part`` (4, 4) of its centre, sliding ``friction``.
 
-    ``shape``: the box of that size, or the cylinder along z that it encloses.
+    ``shape``: the box of that size, or the cylinder along z or the ``mesh`` that it encloses.
     """
 
     name: str
@@ -70,6 +71,12 @@ class PartSpec:
     X_world_part: Array
     friction: float
     shape: str = "box"
+    mesh: BodyMesh | None = None
+
+    @property
+    def cog(self) -> Array:
+        """The centre of gravity (3,) m from the centre of the box, in its frame."""
+        return np.zeros(3) if self.mesh is None else self.mesh.solid.cog
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -80,6 +87,7 @@ class ObstacleSpec:
     size: Array
     X_world_obstacle: Array
     shape: str = "box"
+    mesh: BodyMesh | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,6 +156,7 @@ def build(file: CellFile) -> CellSpec:
             PartSpec(
                 name=part.name,
                 shape=part.shape,
+                mesh=_mesh(part),
                 size=_lengths(part.size_mm),
                 mass=part.mass_kg,
                 friction=part.friction,
@@ -159,6 +168,7 @@ def build(file: CellFile) -> CellSpec:
             ObstacleSpec(
                 name=each.name,
                 shape=each.shape,
+                mesh=_mesh(each),
                 size=_lengths(each.size_mm),
                 X_world_obstacle=_pose(each.pose_mm_deg),
             )
@@ -173,6 +183,10 @@ def build(file: CellFile) -> CellSpec:
         doubts=file.doubts,
         camera=_camera(file),
     )
+
+
+def _mesh(body: PartFile | ObstacleFile) -> BodyMesh | None:
+    return None if body.mesh is None else body.mesh.mesh
 
 
 def _camera(file: CellFile) -> CameraSpec | None:

@@ -7,11 +7,12 @@ inside the cell file's own folder: nothing outside that folder is ever opened, w
 
 import math
 import re
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+from runtime.cell.mesh_keys import MeshFile, MeshKeys
 from runtime.cell.resting import Box, unrest
 from runtime.cell.sensor_file import SensorFile, read_sensor_file
 from runtime.cell.signals import InputSpec, read_inputs
@@ -27,7 +28,7 @@ REACH_MM = 20_000.0
 
 HEAVIEST_KG = 5000.0
 """Heaviest hand, part or load, as heavy as the heaviest rated payload of a robot file."""
-SHAPES = ("box", "cylinder")
+SHAPES = ("box", "cylinder", "mesh")
 """Shapes of parts and obstacles."""
 HANDS = ("fingers", "suction")
 """Kinds of hands."""
@@ -54,7 +55,10 @@ class HandFile(Record):
 
 
 class PartFile(Record):
-    """One ``[[parts]]``: a loose body; ``size_mm`` are the edges of the box, or of the one that encloses a cylinder."""
+    """One ``[[parts]]``: a loose body; ``size_mm`` are the edges of the box, or of the one that encloses another shape.
+
+    ``mesh`` is that of the shape ``mesh``, else None.
+    """
 
     name: str
     shape: str
@@ -62,15 +66,17 @@ class PartFile(Record):
     pose_mm_deg: Numbers
     mass_kg: float
     friction: float
+    mesh: MeshFile | None
 
 
 class ObstacleFile(Record):
-    """One ``[[obstacles]]``: a fixed body, ``size_mm`` as of a part."""
+    """One ``[[obstacles]]``: a fixed body, ``size_mm`` and ``mesh`` as of a part."""
 
     name: str
     shape: str
     size_mm: Numbers
     pose_mm_deg: Numbers
+    mesh: MeshFile | None
 
 
 class LoadFile(Record):
@@ -90,7 +96,7 @@ class CameraFile(Record):
 class CellFile(Record):
     """A cell file and its ``text``. ``home`` is deg, of a sliding axis mm. ``tools``, ``frames``: poses (6,) mm and
     deg by name, FLANGE and WORLD among them; ``controller``: the settings of ``[controller]``; ``doubts``: parts that
-    cannot rest where they are (RBL640)."""
+    cannot rest where they are (RBL640) and meshes that contacts fill (RBL645); ``meshes``: the files of meshes."""
 
     path: str
     text: str
@@ -106,6 +112,7 @@ class CellFile(Record):
     inputs: Mapping[int, InputSpec]
     controller: Layer
     camera: CameraFile | None
+    meshes: tuple[str, ...]
     doubts: tuple[FileFault, ...]
 
     @property
@@ -143,7 +150,9 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
     hand = table.table("hand").gather(_hand)
     parts, obstacles = (table.tables(key, required=False) for key in ("parts", "obstacles"))
     _words(((item.text("name"), item) for item in (*obstacles, *parts)), "of a part or obstacle")
-    lying, fixed = _all(parts, _part), _all(obstacles, _obstacle)
+    meshes = MeshKeys(folder)
+    lying = _all(parts, lambda item: _part(item, meshes))
+    fixed = _all(obstacles, lambda item: _obstacle(item, meshes))
     loads = _named(table, "loads", _load)
     tools, frames = _poses(table, "tools", "FLANGE"), _poses(table, "frames", "WORLD")
     sensors = _named(table, "sensors", lambda item: read_sensor_file(item, folder))
@@ -167,7 +176,8 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
         inputs=MappingProxyType(inputs),
         controller=controller,
         camera=camera,
-        doubts=tuple(_doubts(lying, fixed, parts)),
+        meshes=meshes.names,
+        doubts=(*_hollow(fixed, obstacles, "obstacle"), *_hollow(lying, parts, "part"), *_doubts(lying, fixed, parts)),
     )
 
 
@@ -190,8 +200,19 @@ def _doubts(
             yield item.fault("RBL640", why, key="pose_mm_deg")
 
 
+def _hollow(bodies: Sequence[PartFile | ObstacleFile], items: list[Table], kind: str) -> list[FileFault]:
+    """Return RBL645 for every mesh that is not what contacts take it for."""
+    doubts = [
+        body.mesh.doubt(f"{kind} '{body.name}'", item)
+        for body, item in zip(bodies, items, strict=True)
+        if body.mesh is not None
+    ]
+    return [each for each in doubts if each is not None]
+
+
 def _box(kind: str, body: PartFile | ObstacleFile) -> Box:
-    return Box.of(f"{kind} '{body.name}'", body.size_mm, body.pose_mm_deg, body.shape == "cylinder")
+    box = Box.of(f"{kind} '{body.name}'", body.size_mm, body.pose_mm_deg, body.shape == "cylinder")
+    return box if body.mesh is None else box.replaced(outline=body.mesh.mesh)
 
 
 def _arm(table: Table, folder: Path | None) -> ArmFile:
@@ -257,12 +278,13 @@ def _cup(table: Table) -> Mapping[str, Any]:
     }
 
 
-def _part(table: Table) -> PartFile:
-    shape, size_mm = _solid(table)
+def _part(table: Table, meshes: MeshKeys) -> PartFile:
+    shape, size_mm, mesh = _solid(table, meshes)
     part = PartFile(
         name=table.text("name"),
         shape=shape,
         size_mm=size_mm,
+        mesh=mesh,
         # above 0: the physics cannot move a body without mass
         mass_kg=table.number("mass_kg", low=1e-4, high=HEAVIEST_KG),
         pose_mm_deg=_pose(table, "pose_mm_deg"),
@@ -272,22 +294,25 @@ def _part(table: Table) -> PartFile:
     return part
 
 
-def _obstacle(table: Table) -> ObstacleFile:
-    shape, size_mm = _solid(table)
+def _obstacle(table: Table, meshes: MeshKeys) -> ObstacleFile:
+    shape, size_mm, mesh = _solid(table, meshes)
     obstacle = ObstacleFile(
-        name=table.text("name"), shape=shape, size_mm=size_mm, pose_mm_deg=_pose(table, "pose_mm_deg")
+        name=table.text("name"), shape=shape, size_mm=size_mm, mesh=mesh, pose_mm_deg=_pose(table, "pose_mm_deg")
     )
     table.done()
     return obstacle
 
 
-def _solid(table: Table) -> tuple[str, Numbers]:
-    """Return the shape of a body and the edges of the box around it, mm."""
+def _solid(table: Table, meshes: MeshKeys) -> tuple[str, Numbers, MeshFile | None]:
+    """Return the shape of a body, the edges of the box around it, mm, and its mesh, if it is one."""
     shape = table.text("shape", "box", choices=SHAPES)
     if shape == "cylinder":
         diameter = table.number("diameter_mm", low=0.1, high=REACH_MM)
-        return shape, (diameter, diameter, table.number("height_mm", low=0.1, high=REACH_MM))
-    return shape, _size(table, "size_mm")
+        return shape, (diameter, diameter, table.number("height_mm", low=0.1, high=REACH_MM)), None
+    if shape == "mesh":
+        mesh = meshes.read(table)
+        return shape, mesh.size_mm, mesh
+    return shape, _size(table, "size_mm"), None
 
 
 def _load(table: Table) -> LoadFile:

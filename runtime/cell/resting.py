@@ -1,9 +1,10 @@
-"""Whether the parts of a cell can rest where its file puts them: boxes and cylinders, the floor and their supports.
+"""Whether the parts of a cell can rest where its file puts them: its shape, the floor and its supports.
 
 Two boxes overlap by the least distance that one must move to leave the other: the least overlap of their shadows on
 the 15 axes of the separating axis theorem, the normals of their faces and the products of their edges (S. Gottschalk,
 M. C. Lin and D. Manocha, "OBBTree", SIGGRAPH 1996). For a cylinder no finite list of axes is complete: with those of
-``_directions`` the overlap is exact where the axes of both bodies are parallel, and elsewhere never too small. Poses
+``_directions`` the overlap is exact where the axes of both bodies are parallel, and elsewhere never too small; nor is
+that of a mesh, of which the hull counts. Poses
 are ``[x, y, z, rx, ry, rz]`` in mm and deg with ``R = Rz @ Ry @ Rx``. No numerics: ``robolang check`` examines every
 cell.
 """
@@ -11,7 +12,7 @@ cell.
 import math
 from collections.abc import Sequence
 from itertools import product
-from typing import Self
+from typing import Protocol, Self
 
 from runtime.core.record import Record
 
@@ -23,10 +24,21 @@ DROP_MM = 5.0
 Vector = tuple[float, float, float]
 
 
+class Outline(Protocol):
+    """A convex body in its own frame."""
+
+    @property
+    def normals(self) -> tuple[Vector, ...]:
+        """Unit vectors of the normals of its largest faces."""
+
+    def reach_mm(self, direction: Vector) -> float:
+        """Return how far it reaches from its middle in the direction of a unit vector, mm."""
+
+
 class Box(Record):
     """A box: its name in messages, centre mm, unit vectors of its edges in the world, half of their lengths mm.
 
-    ``is_round``: the cylinder along z that such a box encloses.
+    ``is_round``: the cylinder along z that such a box encloses; ``outline``: another body that it encloses.
     """
 
     name: str
@@ -34,6 +46,7 @@ class Box(Record):
     axes: tuple[Vector, Vector, Vector]
     halves: Vector
     is_round: bool = False
+    outline: Outline | None = None
 
     @classmethod
     def of(cls, name: str, size_mm: Sequence[float], pose_mm_deg: Sequence[float], is_round: bool = False) -> Self:
@@ -55,8 +68,11 @@ class Box(Record):
         x, y, z = self.centre
         return self.replaced(centre=(x, y, z - by))
 
-    def half_shadow(self, direction: Vector) -> float:
-        """Return half of the length of the shadow on a unit vector, mm."""
+    def reach(self, direction: Vector) -> float:
+        """Return how far it reaches from its centre in the direction of a unit vector, mm."""
+        if self.outline is not None:
+            x, y, z = (_dot(axis, direction) for axis in self.axes)
+            return self.outline.reach_mm((x, y, z))
         if self.is_round:
             along = abs(_dot(self.axes[2], direction))
             return self.halves[2] * along + self.halves[0] * math.sqrt(max(0.0, 1.0 - along * along))
@@ -74,7 +90,7 @@ class Box(Record):
     @property
     def bottom(self) -> float:
         """The height of its lowest corner, mm."""
-        return self.centre[2] - self.half_shadow((0.0, 0.0, 1.0))
+        return self.centre[2] - self.reach((0.0, 0.0, -1.0))
 
 
 def unrest(part: Box, others: Sequence[Box], below: Sequence[Box]) -> str:
@@ -101,7 +117,14 @@ def overlap(one: Box, other: Box) -> float:
     if math.hypot(*apart) >= math.hypot(*one.halves) + math.hypot(*other.halves):
         return 0.0
     directions = _directions(one, other)
-    return max(0.0, min(one.half_shadow(d) + other.half_shadow(d) - abs(_dot(apart, d)) for d in directions))
+    return max(0.0, min(_shadows(one, other, _dot(apart, d), d) for d in directions))
+
+
+def _shadows(one: Box, other: Box, apart: float, direction: Vector) -> float:
+    """Return by how much the shadows of two bodies overlap, whose centres are ``apart`` mm in that direction."""
+    back = (-direction[0], -direction[1], -direction[2])
+    # out on the nearer side
+    return min(one.reach(direction) + other.reach(back) - apart, one.reach(back) + other.reach(direction) + apart)
 
 
 def _directions(one: Box, other: Box) -> list[Vector]:
@@ -112,6 +135,9 @@ def _directions(one: Box, other: Box) -> list[Vector]:
     for body, beside in ((one, other), (other, one)):
         if body.is_round:
             found += [_unit(_across(body, point)) for point in beside.rims()]
+    for body in (one, other):
+        if body.outline is not None:
+            found += [_plus((0.0, 0.0, 0.0), body.axes, normal) for normal in body.outline.normals]
     return [*one.axes, *other.axes, *(each for each in found if each is not None)]
 
 

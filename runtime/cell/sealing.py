@@ -1,15 +1,16 @@
 """Whether a suction cup seals on a part: its whole rim lies on one flat face.
 
-The face is the one that looks towards the cup, of a box, or an end of a cylinder; the side of a cylinder is not flat,
-so that no cup seals on it. A real cup is soft: its lip bridges ``GAP`` and yields by ``PRESSED`` where it is pushed
-on.
+The face is the one that looks towards the cup, of a box, an end of a cylinder or a flat face of a mesh; the side of a
+cylinder is not flat, so that no cup seals on it. A real cup is soft: its lip bridges ``GAP`` and yields by ``PRESSED``
+where it is pushed on.
 """
 
 import numpy as np
 
 from runtime.cell.cell import HandSpec, PartSpec
+from runtime.cell.flat_faces import flat_faces
 from runtime.core.frames import Array
-from runtime.core.linear import matmul
+from runtime.core.linear import dot, matmul
 from runtime.core.units import DEG
 
 GAP = 1e-3
@@ -28,19 +29,28 @@ def seals(hand: HandSpec, X_world_tool: Array, part: PartSpec, X_world_part: Arr
     """Return whether the whole rim of the cup lies on a flat face of a part; poses (4, 4)."""
     R_part_world = X_world_part[:3, :3].T
     R = matmul(R_part_world, X_world_tool[:3, :3])
-    towards = R[:, 2]
-    # of a box in any pose exactly one face looks to the cup, but for the edges, on which no cup seals anyway
-    axis = int(np.argmax(np.abs(towards)))
-    if not abs(towards[axis]) >= np.cos(ASKEW) or (part.shape == "cylinder" and axis != 2):
-        return False
     centre = matmul(R_part_world, X_world_tool[:3, 3] - X_world_part[:3, 3])
     rim = centre[:, None] + matmul(R, _RIM * hand.pad[0])
+    if part.mesh is None:
+        return _on_solid(part, R[:, 2], rim)
+    faces = (face for face in flat_faces(part.mesh) if -dot(face.normal, R[:, 2]) >= np.cos(ASKEW))
+    return any(_on(matmul(face.normal, rim) - face.offset) and face.holds(centre, hand.pad[0]) for face in faces)
+
+
+def _on(gaps: Array) -> bool:
+    """Return whether points of the rim at such distances (8,) m from a plane seal on it; NaN seals on nothing."""
+    return bool(gaps.max() <= GAP and gaps.min() >= -PRESSED)
+
+
+def _on_solid(part: PartSpec, towards: Array, rim: Array) -> bool:
+    """Return whether the rim (3, 8) m is on a face of a box or a cylinder; the cup looks ``towards`` (3,) it."""
+    # of a box in any pose exactly one face looks to the cup, but for the edges, on which no cup seals anyway
+    axis, is_round = int(np.argmax(np.abs(towards))), part.shape == "cylinder"
+    if not abs(towards[axis]) >= np.cos(ASKEW) or (is_round and axis != 2):
+        return False
     half = part.size / 2.0
-    gaps = -np.sign(towards[axis]) * rim[axis] - half[axis]
-    # so written, a pose with NaN seals on nothing
-    if not (gaps.max() <= GAP and gaps.min() >= -PRESSED):
+    if not _on(-np.sign(towards[axis]) * rim[axis] - half[axis]):
         return False
     across = [k for k in range(3) if k != axis]
-    if part.shape == "cylinder":
-        return bool((np.hypot(*rim[across]) <= half[0]).all())
-    return bool((np.abs(rim[across]) <= half[across][:, None]).all())
+    inside = np.hypot(*rim[across]) <= half[0] if is_round else np.abs(rim[across]) <= half[across][:, None]
+    return bool(inside.all())

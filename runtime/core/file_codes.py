@@ -113,4 +113,23 @@ register(
         meaning="A part of the cell overlaps another part, an obstacle or the floor, or nothing supports it.",
         remedy="Correct its pose (its centre, mm) or its size; in a run with physics it would be pushed away or fall.",
     ),
+    Code(
+        code="RBL643",
+        name="mesh-unusable",
+        meaning="The mesh file of a part or an obstacle is missing, is no STL or OBJ file, is damaged or is too large.",
+        remedy="Export the mesh anew as STL or OBJ with at most 20000 triangles, into the folder of the cell file.",
+    ),
+    Code(
+        code="RBL644",
+        name="mesh-not-solid",
+        meaning="The mesh of a part or an obstacle encloses no volume: it has holes, is inside out or is flat.",
+        remedy="Repair it where it was made: a closed surface, every triangle counter-clockwise from outside.",
+    ),
+    Code(
+        code="RBL645",
+        name="mesh-filled",
+        meaning="A mesh is hollow or has corners that go in; contacts are those of its convex hull, which fills them.",
+        remedy="Put it together from several parts or obstacles that are convex, or, where the hull will do, state "
+        "filled = true.",
+    ),
 )

@@ -1,13 +1,16 @@
-"""Moments of inertia of the uniform solids that parts and hands are made of, about their centres, kg m2."""
+"""Moments of inertia of the uniform solids that parts and hands are made of, about their centres of gravity, kg m2."""
 
 import numpy as np
 
+from runtime.cell.cell import PartSpec
 from runtime.core.frames import Array
 
 
-def solid_inertia(shape: str, mass: float, size: Array) -> Array:
-    """Return the inertia (3, 3) of a part by its shape; ``size`` (3,) m as in ``PartSpec``."""
-    return cylinder_inertia(mass, size) if shape == "cylinder" else box_inertia(mass, size)
+def part_inertia(part: PartSpec) -> Array:
+    """Return the inertia (3, 3) of a part about its centre of gravity."""
+    if part.mesh is not None:
+        return np.asarray(part.mass * part.mesh.solid.gyration)
+    return (cylinder_inertia if part.shape == "cylinder" else box_inertia)(part.mass, part.size)
 
 
 def box_inertia(mass: float, size: Array) -> Array:

@@ -33,14 +33,16 @@ A grasp is friction between pads and part and nothing else. Two errors of the si
   Shorter steps would have bought the same for 20 times the cost; a weld would have been no grasp.
 
 The text is built here and never read from a user's file, so none of the files that MJCF can open (includes, plugins,
-meshes) is ever read (R22). MuJoCo is not imported here (``cell_model``). Read at start, no rate.
+meshes) is ever read (R22): of the meshes of a cell it has the corners of their hulls. MuJoCo is not imported here
+(``cell_model``). Read at start, no rate.
 """
 
 import xml.etree.ElementTree as ET
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 
 import numpy as np
 
+from runtime.cell.body_mesh import BodyMesh
 from runtime.cell.cell import CellSpec, HandSpec, ObstacleSpec, PartSpec
 from runtime.cell.gripper import FINGERS, finger_sign, fingers_of, is_holder, palm_box
 from runtime.core.decompositions import symmetric_eigen
@@ -48,7 +50,7 @@ from runtime.core.frames import Array, pose
 from runtime.core.linear import matmul, norm
 from runtime.core.units import GRAVITY
 from runtime.plant.hand import finger_body, palm_body
-from runtime.plant.inertia import solid_inertia
+from runtime.plant.inertia import part_inertia
 from runtime.robot.model.spec import AxisSpec, Body, RobotSpec
 
 # who meets whom: a geom collides where its contype meets the other's conaffinity, in either order
@@ -103,8 +105,10 @@ def build_mjcf(
     root = ET.Element("mujoco", model=spec.name)
     # the order of bodies and joints is relied on: CellModel counts places in the state by it
     _options(root, timestep)
+    parts, obstacles = (cell.parts, cell.obstacles) if cell else ((), ())
+    hulls = _hulls(root, (*obstacles, *parts))
     world = ET.SubElement(root, "worldbody")
-    _surroundings(world, cell.obstacles if cell else ())
+    _surroundings(world, obstacles, hulls)
     last = _arm(world, spec, timestep)
     flange = _body(last, "hand" if cell else "flange", spec.X_last_flange)
     if cell is not None:
@@ -115,8 +119,8 @@ def build_mjcf(
         )  # X_world_tool reads it; an arm alone has it at the flange
     if payload is not None:
         _inertial(_body(flange, "payload", np.eye(4)), payload)
-    for part in cell.parts if cell else ():
-        _part(world, part)
+    for part in parts:
+        _part(world, part, hulls)
     if cell is not None:
         _contacts(root, spec, cell, timestep)
         if not cell.hand.is_cup:
@@ -179,7 +183,22 @@ def _options(root: ET.Element, timestep: float) -> None:
     )
 
 
-def _surroundings(world: ET.Element, obstacles: Iterable[ObstacleSpec]) -> None:
+Hulls = Mapping[BodyMesh, str]
+"""The name of the asset of each mesh."""
+
+
+def _hulls(root: ET.Element, bodies: Iterable[PartSpec | ObstacleSpec]) -> Hulls:
+    """Write the hull of each mesh once."""
+    meshes = dict.fromkeys(body.mesh for body in bodies if body.mesh is not None)
+    names = {mesh: f"hull{k}" for k, mesh in enumerate(meshes)}
+    asset = ET.SubElement(root, "asset") if names else root
+    for mesh, name in names.items():
+        # without faces MuJoCo finds those of the hull itself
+        ET.SubElement(asset, "mesh", name=name, vertex=row(mesh.hull.vertices.ravel()), inertia="convex")
+    return names
+
+
+def _surroundings(world: ET.Element, obstacles: Iterable[ObstacleSpec], hulls: Hulls) -> None:
     ET.SubElement(world, "light", pos="0 -1 3", dir="0 0.3 -1", diffuse="0.7 0.7 0.7")
     _geom(world, "floor", "environment", type="plane", size="3 3 0.1", rgba="0.85 0.86 0.88 1")
     for each in obstacles:
@@ -189,7 +208,7 @@ def _surroundings(world: ET.Element, obstacles: Iterable[ObstacleSpec]) -> None:
             "environment",
             each.X_world_obstacle,
             rgba="0.55 0.47 0.38 1",
-            **_solid(each),
+            **_solid(each, hulls),
         )
 
 
@@ -371,10 +390,10 @@ def _coupling(root: ET.Element, timestep: float) -> None:
     )
 
 
-def _part(world: ET.Element, part: PartSpec) -> None:
+def _part(world: ET.Element, part: PartSpec, hulls: Hulls) -> None:
     body = _body(world, f"part:{part.name}", part.X_world_part)
     ET.SubElement(body, "freejoint", name=f"part:{part.name}")
-    _inertial(body, Body(mass=part.mass, cog=np.zeros(3), inertia=solid_inertia(part.shape, part.mass, part.size)))
+    _inertial(body, Body(mass=part.mass, cog=part.cog, inertia=part_inertia(part)))
     # priority: the friction of a contact is that of the part, not the larger of the two
     _geom(
         body,
@@ -384,12 +403,14 @@ def _part(world: ET.Element, part: PartSpec) -> None:
         priority="1",
         friction=f"{part.friction!r} 0.005 0.0001",
         rgba="0.45 0.55 0.7 1",
-        **_solid(part),
+        **_solid(part, hulls),
     )
 
 
-def _solid(body: PartSpec | ObstacleSpec) -> dict[str, str]:
+def _solid(body: PartSpec | ObstacleSpec, hulls: Hulls) -> dict[str, str]:
     """Return the attributes of the shape of a part or an obstacle."""
+    if body.mesh is not None:
+        return {"type": "mesh", "mesh": hulls[body.mesh]}
     half = body.size / 2.0
     if body.shape == "cylinder":
         return {"type": "cylinder", "size": row(half[1:])}

@@ -103,9 +103,7 @@ class MujocoPlant:
             holders=1 if cell.hand.is_cup else len(FINGERS),
         )
         hand = int(self._model.body("hand").id)
-        self._suction = (
-            Suction(cell, self.bodies, data.xfrc_applied, hand, data.xipos[hand]) if cell.hand.is_cup else None
-        )
+        self._suction = Suction(cell, self.bodies, data.xfrc_applied, hand, data.xipos) if cell.hand.is_cup else None
         self._known_contacts: dict[bytes, frozenset[Pair]] = {}
         self._touched: frozenset[Pair] = frozenset()
         self._ncon = -1

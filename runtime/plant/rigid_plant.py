@@ -127,6 +127,8 @@ class RigidPlant(Stateful):
         mass, moment = hand.mass, hand.mass * np.asarray(hand.cog)
         for part in self._cell.parts:
             if part.name == self._holding:
-                centre = matmul(hand.X_flange_tool, self._X_tool_part)[:3, 3]
+                # the centre of gravity of a mesh is not in the middle of its box
+                X = matmul(hand.X_flange_tool, self._X_tool_part)
+                centre = X[:3, 3] + matmul(X[:3, :3], part.cog)
                 mass, moment = mass + part.mass, moment + part.mass * centre
         self._model.set_payload(Payload(mass=mass, cog=moment / mass if mass else np.zeros(3)))

@@ -21,13 +21,14 @@ from runtime.plant.touches import Bodies
 class Suction:
     """The cup of a cell; what it holds now is read from the forces that it has written."""
 
-    def __init__(self, cell: CellSpec, bodies: Bodies, forces: Array, hand: int, centre: Array) -> None:
+    def __init__(self, cell: CellSpec, bodies: Bodies, forces: Array, hand: int, centres: Array) -> None:
         """``forces`` (bodies, 6) N, N m on the centres of gravity in the world, those of the parts last.
 
-        ``hand`` is the body of the hand and ``centre`` (3,) m its centre of gravity in the world, live.
+        ``hand`` is the body of the hand, ``centres`` (bodies, 3) m are these centres, live.
         """
-        self._cell, self._bodies, self._centre = cell, bodies, centre
-        self._on_hand, self._on_parts = forces[hand], forces[len(forces) - len(cell.parts) :]
+        self._cell, self._bodies, parts = cell, bodies, len(forces) - len(cell.parts)
+        self._on_hand, self._on_parts = forces[hand], forces[parts:]
+        self._hand, self._parts = centres[hand], centres[parts:]
 
     def pull(self, closed: bool) -> None:
         """Write the forces of the tick to come, for the poses of now."""
@@ -41,8 +42,8 @@ class Suction:
         force = -self._cell.hand.grip_force * bodies.R_tool[:, 2]
         self._on_parts[held, :3], self._on_hand[:3] = force, -force
         # moments about the centres of gravity, at which MuJoCo applies what is written here
-        self._on_parts[held, 3:] = np.cross(bodies.p_tool - bodies.p[held], force)
-        self._on_hand[3:] = np.cross(bodies.p_tool - self._centre, -force)
+        self._on_parts[held, 3:] = np.cross(bodies.p_tool - self._parts[held], force)
+        self._on_hand[3:] = np.cross(bodies.p_tool - self._hand, -force)
 
     def held(self) -> Sequence[str]:
         """Return the part that is pulled, if any."""

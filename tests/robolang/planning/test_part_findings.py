@@ -15,6 +15,7 @@ from robolang.planning.path_coverage import explore
 from robolang.project.project import load_project
 from runtime.core.frames import pose
 from runtime.core.units import MM
+from tests.runtime.meshes import angle_bracket, binary_stl, prism
 from tests.runtime.plant.cells import BESIDE, GRIP, LEDGE, LET_GO, OWN, job
 from tests.runtime.plant.test_touches_of_mujoco import ALLOWED
 
@@ -222,3 +223,31 @@ def test_a_cylinder_is_met_where_it_is_and_not_where_its_box_would_be(tmp_path):
     assert [row[0] for row in found(tmp_path, text, OWN, obstacles=box)[0]] == ["RBL421"]
     nearer = ROUND_POST.format(where[0] - 6.0, where[1] - 6.0, where[2])
     assert [row[0] for row in found(tmp_path, text, OWN, obstacles=nearer)[0]] == ["RBL421"]
+
+
+def mesh(folder, mesh, kind, keys, pose_mm_deg):
+    """The table of a part or an obstacle that is a mesh."""
+    name = f"{kind}.stl"
+    (folder / name).write_bytes(binary_stl(mesh))
+    return f'\n[[{kind}]]\nname = "{kind}"\nshape = "mesh"\nfile = "{name}"\n{keys}pose_mm_deg = {pose_mm_deg}\n'
+
+
+def test_a_hexagon_is_met_carried_and_put_down_as_one(tmp_path):
+    """34.6 mm over its flats, which are along y, and 40 mm over its corners."""
+    part = mesh(tmp_path, prism(6, 20.0, 80.0), "parts", "mass_kg = 1.5\n", [480, -220, 640, 0, 0, 0])
+    text = GRIP + "MOVE P1 + (0, 0, 50)\nMOVE P1 + (0, 100, 50)\nMOVE P1 + (0, 100, 0)\n" + LET_GO
+    assert found(tmp_path, text, obstacles=part) == ([], [])
+    # the open pads are at 40 mm: from 22.7 mm beside it one is in a flat
+    beside = "MOVE P5 + (0, {0}, 0)\nMOVE P1 + (0, {0}, 0)\n"
+    assert found(tmp_path, beside.format(22.2), obstacles=part) == ([], [])
+    assert found(tmp_path, beside.format(24.0), obstacles=part)[0] == [("RBL440", 3)]
+
+
+def test_a_corner_that_goes_in_is_filled(tmp_path):
+    """A bracket around the path of the right finger: its legs are 20 mm off, its hull is in the way."""
+    bracket = angle_bracket(160.0, 10.0, 80.0)
+    keys = "filled = true\n"
+    clear = mesh(tmp_path, bracket, "obstacles", keys, [480 + 60, -220 + 140, 640, 0, 0, 0])
+    assert found(tmp_path, "MOVE P5\nMOVE P1\n", OWN, obstacles=clear) == ([], [])
+    around = mesh(tmp_path, bracket, "obstacles", keys, [480 + 40, -220 - 20, 640, 0, 0, 0])
+    assert [row[0] for row in found(tmp_path, "MOVE P5\nMOVE P1\n", obstacles=around)[0]] == ["RBL421"]

@@ -8,15 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from runtime.appearance import surroundings
 from runtime.appearance.cell_scene import scene_of
 from runtime.appearance.mechanisms import machine_scene
 from runtime.appearance.scene import ROLES, Scene, SceneBody, SceneJoint, Shape, View
 from runtime.appearance.stance import Stance, world_poses
+from runtime.cell.body_mesh import read_body_mesh
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.core.mesh import Mesh
 from runtime.pulses.mechanism import library, load_builtin
 from tests.runtime.from_texts import load_cell
+from tests.runtime.meshes import angle_bracket, binary_stl, prism
 
 CELL = load_cell(Path("programs/pick_and_place.cell.toml"))
 TRIANGLE = Mesh(vertices=np.eye(3), faces=np.array([[0, 1, 2]], dtype=np.int32))
@@ -194,6 +197,33 @@ def test_a_cylinder_is_drawn_as_one():
     for body, size in ((f"part:{part.name}", (0.02, 0.02, 0.1)), (f"obstacle:{post.name}", (0.03, 0.03, 0.2))):
         assert (shapes[body].kind, shapes[body].size) == ("cylinder", pytest.approx(size))
         np.testing.assert_allclose(shapes[body].X_body_shape, np.eye(4), atol=1e-12)
+
+
+def test_a_mesh_is_drawn_as_it_is_and_once_for_all_bodies(tmp_path):
+    """Not its hull; and a log keeps it, since its file may be gone."""
+    (tmp_path / "l bracket.stl").write_bytes(binary_stl(angle_bracket(60.0, 6.0, 40.0)))
+    body = read_body_mesh(tmp_path / "l bracket.stl", "l bracket.stl", 1.0)
+    part = replace(CELL.parts[0], shape="mesh", mesh=body, size=body.size)
+    post = replace(CELL.obstacles[0], shape="mesh", mesh=body, size=body.size)
+    (tmp_path / "l bracket.stl").unlink()
+    scene = Scene.from_json(json.loads(json.dumps(scene_of(replace(CELL, parts=(part,), obstacles=(post,))).as_json())))
+    shapes = {shape.body: shape for shape in scene.shapes}
+    for name, role in ((f"part:{part.name}", "part"), (f"obstacle:{post.name}", "obstacle")):
+        shape = shapes[name]
+        assert (shape.kind, shape.role, shape.mesh) == ("mesh", role, "cell:0:l bracket")
+        np.testing.assert_allclose(shape.X_body_shape, np.eye(4), atol=1e-12)
+    (mesh,) = scene.meshes.values()
+    np.testing.assert_allclose(mesh.vertices, body.mesh.vertices, atol=1e-5)
+    assert (mesh.faces == body.mesh.faces).all()
+
+
+def test_many_triangles_of_bodies_are_made_fewer(tmp_path, monkeypatch):
+    monkeypatch.setattr(surroundings, "MOST_FACES", 500)
+    (tmp_path / "round.stl").write_bytes(binary_stl(prism(400, 200.0, 40.0)))
+    body = read_body_mesh(tmp_path / "round.stl", "round.stl", 1.0)
+    scene = scene_of(replace(CELL, parts=(replace(CELL.parts[0], shape="mesh", mesh=body, size=body.size),)))
+    (mesh,) = scene.meshes.values()
+    assert 100 < len(mesh.faces) <= 500 < len(body.mesh.faces)
 
 
 def test_a_cup_is_drawn_from_the_palm_to_the_tool_point():

@@ -120,13 +120,13 @@ def test_what_the_part_is_pulled_with_pushes_the_hand():
         pad_length=0.03,
         holders=1,
     )
-    forces, centre = np.zeros((3, 6)), rng.uniform(-1.0, 1.0, 3)
-    suction = Suction(cell(), bodies, forces, 1, centre)
+    forces, centres = np.zeros((3, 6)), rng.uniform(-1.0, 1.0, (3, 3))
+    suction = Suction(cell(), bodies, forces, 1, centres)
     suction.pull(True)
     assert suction.held() == ["part"]
     assert forces[2, :3] == pytest.approx(-100.0 * X_world_tool[:3, 2])
     assert forces[1, :3] == pytest.approx(-forces[2, :3])
-    moments = [forces[k, 3:] + np.cross(p, forces[k, :3]) for k, p in ((1, centre), (2, X_world_part[:3, 3]))]
+    moments = [forces[k, 3:] + np.cross(p, forces[k, :3]) for k, p in enumerate(centres)]
     assert sum(moments) == pytest.approx(np.zeros(3), abs=1e-9)
     suction.pull(False)
     assert (suction.held(), forces.any()) == ([], False)

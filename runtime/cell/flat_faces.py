@@ -1,0 +1,115 @@
+"""The flat faces of a mesh, on which a suction cup can seal: triangles side by side in one plane, and their outline."""
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy import einsum
+from numpy.typing import NDArray
+
+from runtime.cell.body_mesh import BodyMesh
+from runtime.core.frames import Array
+from runtime.core.linear import dot, matmul
+from runtime.core.mesh import Mesh
+from runtime.core.units import DEG
+
+FLAT = 1e-4
+"""How far the corners of a face may be off its plane, m: a lip bridges ten times as much."""
+TURNED = 2.0 * DEG
+"""Largest angle between two triangles of one face, rad."""
+SMALLEST = 0.7e-6
+"""Area below which no cup of 1 mm fits on a face, m2."""
+ROUNDING = 1e-6
+"""How far a rim may be over the outline, m: numbers of STL files have seven digits."""
+
+
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FlatFace:
+    """A face in the frame of its part: outward ``normal`` (3,), its ``offset`` m from the origin, and ``outline``.
+
+    ``axes`` (2, 3) are unit vectors in its plane; ``outline`` (k, 2, 2) m are the ends of its edges in them, those of
+    holes among them.
+    """
+
+    normal: Array
+    offset: float
+    axes: Array
+    outline: Array
+
+    def holds(self, place: Array, radius: float) -> bool:
+        """Return whether a disc about ``place`` (3,) m is wholly on the face: no edge is under it."""
+        centre = matmul(self.axes, place)
+        start, along = self.outline[:, 0] - centre, self.outline[:, 1] - self.outline[:, 0]
+        # the point of each edge that is nearest to the middle of the disc
+        share = -einsum("ij,ij->i", start, along) / einsum("ij,ij->i", along, along)
+        nearest = start + np.clip(share, 0.0, 1.0)[:, None] * along
+        if not (einsum("ij,ij->i", nearest, nearest) >= max(radius - ROUNDING, 0.0) ** 2).all():
+            return False
+        # inside where a ray to the right crosses the outline an odd number of times
+        end = start + along
+        crosses = (start[:, 1] > 0.0) != (end[:, 1] > 0.0)
+        right = start[crosses, 0] - start[crosses, 1] * along[crosses, 0] / along[crosses, 1] > 0.0
+        return bool(np.count_nonzero(right) % 2)
+
+
+@lru_cache(maxsize=256)
+def flat_faces(body: BodyMesh) -> tuple[FlatFace, ...]:
+    """Return the flat faces of a mesh that a cup may seal on, the largest first."""
+    return tuple(_Faces(body.mesh).found())
+
+
+class _Faces:
+    """Triangles, of which each belongs to one face."""
+
+    def __init__(self, mesh: Mesh) -> None:
+        self._mesh = mesh
+        a, b, c = np.moveaxis(mesh.vertices[mesh.faces], 1, 0)
+        across = np.cross(b - a, c - a)
+        lengths = np.sqrt(einsum("ij,ij->i", across, across))
+        self._areas = lengths / 2.0
+        self._normals = across / np.where(lengths > 0.0, lengths, 1.0)[:, None]
+        self._edges = [[(a, b), (b, c), (c, a)] for a, b, c in mesh.faces.tolist()]
+        self._owners: dict[tuple[int, int], list[int]] = {}
+        for triangle, edges in enumerate(self._edges):
+            for edge in edges:
+                self._owners.setdefault(edge, []).append(triangle)
+
+    def found(self) -> list[FlatFace]:
+        """Return the faces; each begins at the largest triangle that is left."""
+        left = np.ones(len(self._areas), dtype=np.bool_)
+        faces = []
+        for seed in np.argsort(-self._areas, kind="stable").tolist():
+            if left[seed] and self._areas[seed] > 0.0:
+                face = self._grown(seed, left)
+                left[face] = False
+                if self._areas[face].sum() >= SMALLEST:
+                    faces.append(self._face(seed, face))
+        return faces
+
+    def _grown(self, seed: int, left: NDArray[np.bool_]) -> list[int]:
+        normal, corners = self._normals[seed], self._mesh.vertices[self._mesh.faces]
+        offset = dot(normal, corners[seed, 0])
+        near = (np.abs(matmul(corners, normal) - offset) <= FLAT).all(axis=1)
+        # one without an area has no normal of its own
+        turned = (matmul(self._normals, normal) >= np.cos(TURNED)) | (self._areas <= 0.0)
+        may = near & turned & left
+        face, todo = {seed}, [seed]
+        while todo:
+            for one, other in self._edges[todo.pop()]:
+                new = [each for each in self._owners.get((other, one), ()) if may[each] and each not in face]
+                face.update(new)
+                todo += new
+        return sorted(face)
+
+    def _face(self, seed: int, face: list[int]) -> FlatFace:
+        normal = self._normals[seed]
+        # any direction in the plane will do; the one that is least along the normal is surely none of zero length
+        first = np.cross(normal, np.eye(3)[int(np.abs(normal).argmin())])
+        first /= np.sqrt(dot(first, first))
+        axes = np.stack([first, np.cross(normal, first)])
+        inner = {edge for triangle in face for edge in self._edges[triangle]}
+        # an edge between two triangles of the face is in it in both directions
+        outline = sorted(edge for edge in inner if edge[::-1] not in inner)
+        corners = self._mesh.vertices[np.array(outline)]
+        offset = dot(normal, self._mesh.vertices[self._mesh.faces[seed, 0]])
+        return FlatFace(normal=normal, offset=offset, axes=axes, outline=matmul(corners, axes.T))
