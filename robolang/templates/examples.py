@@ -7,6 +7,7 @@ from robolang.core.storage import add_files, only_one
 from robolang.project.discovery import cell_beside, points_file
 from robolang.templates.template import CELL, POINTS, PROGRAM, TEST, title_of
 from robolang.templates.writing import refuse_existing
+from runtime.cell.cell_file import read_cell_file
 from runtime.core.bounded_files import read_bounded
 from runtime.core.faults import Fault
 from runtime.core.record import Record
@@ -27,6 +28,11 @@ class Example(Record):
     def title(self) -> str:
         """What it does: its first sentence."""
         return title_of(self.program.read_text("utf-8"))
+
+    def meshes(self) -> dict[str, Path]:
+        """Return the files of meshes that its cell names, by the names that they have there."""
+        cell = self.files.get(CELL)
+        return {} if cell is None else {name: cell.parent / name for name in read_cell_file(cell).meshes}
 
 
 def examples() -> list[Example]:
@@ -56,6 +62,7 @@ def copy_example(name: str, folder: Path) -> list[Path]:
     """
     found = example(name)
     files = {f"{found.name}{ending}": read_bounded(path, MOST_BYTES) for ending, path in found.files.items()}
+    files |= {name: read_bounded(path, MOST_BYTES) for name, path in found.meshes().items()}
     # read before the lock and before a folder is made: a program that cannot be read leaves nothing
     with only_one(folder):
         refuse_existing(folder, files)

@@ -24,7 +24,7 @@ def place(name, part):
 
 def test_there_are_at_least_ten_programs():
     assert len(ALL) >= 10
-    assert set(SHOP) == {"cans", "dispense", "inspect", "palletise", "recover", "sort", "tend"}
+    assert set(SHOP) == {"cans", "dispense", "inspect", "nuts", "palletise", "recover", "sort", "tend"}
 
 
 @pytest.mark.parametrize("name", SHOP)
@@ -120,3 +120,14 @@ def test_cans_are_stacked_by_a_cup():
     notes = [note for entry in run("shop/cans.rbl")[1].report["statements"] for note in entry["notes"]]
     assert notes == ["holds 'can_1'", "holds 'can_2'"]
     assert not run("shop/cans.rbl")[1].log["fingers"].any()
+
+
+def test_nuts_that_are_meshes_are_stacked():
+    for k, part in enumerate(("nut_1", "nut_2")):
+        assert place("nuts", part) == pytest.approx([480.0, 180.0, 620.0 + 40.0 * k], abs=0.5)
+    _, result = run("shop/nuts.rbl")
+    notes = [note for entry in result.report["statements"] for note in entry["notes"]]
+    assert notes == ["holds 'nut_1'", "holds 'nut_2'"]
+    opening = 2.0 * result.log["fingers"].min(axis=1)
+    assert np.median(opening[opening < 0.05]) == pytest.approx(0.04, abs=1e-4)  # over the flats
+    assert set(result.log.needed_meta()["scene"]["meshes"]) == {"cell:0:bracket", "cell:1:nut"}

@@ -7,6 +7,7 @@ from robolang.templates.examples import copy_example, examples
 from runtime.core.faults import Fault
 from tests.robolang.cli.commands import ROOT, robolang
 
+MESHES = {"nuts": {"bracket.stl", "nut.stl"}}
 NAMES = [each.name for each in examples()]
 
 
@@ -20,7 +21,8 @@ def test_every_program_is_an_example_under_a_name_of_its_own():
 def test_a_copy_has_all_that_the_program_needs(tmp_path, name):
     files = copy_example(name, tmp_path / "mine")
     assert sorted((tmp_path / "mine").iterdir()) == sorted(files)
-    assert all(path.name.startswith(f"{name}.") for path in files)
+    assert all(path.name.startswith(f"{name}.") for path in files if path.suffix != ".stl")
+    assert {path.name for path in files if path.suffix == ".stl"} == MESHES.get(name, set())
     robolang("check", files[0])
 
 
