@@ -51,11 +51,11 @@ class MeshKeys:
     def __init__(self, folder: Path | None) -> None:
         """``folder`` is that of the cell file, None for a cell held as text, which can name no file."""
         self._folder = folder
-        self._read: dict[tuple[str, float], BodyMesh] = {}
+        self._read: dict[tuple[str, float], BodyMesh | _Refused] = {}
 
     @property
     def names(self) -> tuple[str, ...]:
-        """The files that have been read, as the cell names them, each once."""
+        """The files that the cell names, each once."""
         return tuple(dict.fromkeys(name for name, _ in self._read))
 
     def read(self, table: Table) -> MeshFile:
@@ -69,29 +69,43 @@ class MeshKeys:
             # before it is read: a hundred hulls take minutes already
             if len(self._read) >= MOST_FILES:
                 table.fail("RBL643", f"'{name}' is one of more than {MOST_FILES} meshes", key="file")
-            self._read[name, scale] = _mesh(table, path, name, scale)
-        return MeshFile(mesh=self._read[name, scale], filled=filled)
+            self._read[name, scale] = _read(path, name, scale)
+        found = self._read[name, scale]
+        # every body that names it has its fault at its own line
+        if isinstance(found, _Refused):
+            table.fail(found.code, f"'{name}' {found.why}", key="file")
+        _check_size(table, found, scale)
+        return MeshFile(mesh=found, filled=filled)
 
 
-def _mesh(table: Table, path: Path, name: str, scale: float) -> "BodyMesh":
+class _Refused(Record):
+    """Why a file gives no mesh."""
+
+    code: str
+    why: str
+
+
+def _read(path: Path, name: str, scale: float) -> "BodyMesh | _Refused":
     from runtime.cell.body_mesh import read_body_mesh
     from runtime.core.mesh_files import MeshError
     from runtime.core.solid import NoSolidError
 
     try:
-        mesh = read_body_mesh(path, name, scale)
+        return read_body_mesh(path, name, scale)
     except MeshError as error:
-        table.fail("RBL643", f"'{name}' {error}", key="file")
+        return _Refused(code="RBL643", why=str(error))
     except NoSolidError as error:
-        table.fail("RBL644", f"'{name}' {error}", key="file")
+        return _Refused(code="RBL644", why=str(error))
+
+
+def _check_size(table: Table, mesh: "BodyMesh", scale: float) -> None:
     edges = [float(each) * 1000.0 for each in mesh.size]
     if not (SHORTEST_MM <= max(edges) <= LONGEST_MM and min(edges) >= THINNEST_MM):
         shown = " x ".join(f"{each:.6g}" for each in edges)
         table.fail(
             "RBL605",
-            f"'{name}' is {shown} mm with scale {scale:g}; its longest edge must be between {SHORTEST_MM:g} and "
+            f"'{mesh.name}' is {shown} mm with scale {scale:g}; its longest edge must be between {SHORTEST_MM:g} and "
             f"{LONGEST_MM:g} mm, its shortest at least {THINNEST_MM:g} mm",
             "scale times a number of the file is mm: 1 for a file in mm, 1000 for one in m, 25.4 for one in inches",
             key="scale" if "scale" in table else "file",
         )
-    return mesh

@@ -7,16 +7,19 @@ import numpy as np
 import pytest
 
 from robolang.project.builtin import cell_text
-from runtime.cell import mesh_keys
+from runtime.cell import body_mesh, mesh_keys
 from runtime.cell.cell import build
 from runtime.cell.cell_file import parse_cell_file, read_cell_file
 from runtime.core.mesh import Mesh
+from runtime.core.mesh_files import read_mesh
 from runtime.core.tomlfile import FileFault, Source
 from tests.runtime.meshes import angle_bracket, binary_stl, box_mesh, frame, prism
 
 SIZE = "size_mm = [60, 40, 80]"
 HEX = prism(6, 20.0, 80.0)
 BOX = box_mesh((60.0, 40.0, 80.0))
+INWARDS = Mesh(vertices=BOX.vertices, faces=BOX.faces[:, ::-1])
+OPEN = Mesh(vertices=BOX.vertices, faces=BOX.faces[1:])
 
 
 def cell(folder, mesh=BOX, keys='file = "part.stl"', name="part.stl", more=""):
@@ -66,6 +69,18 @@ def test_a_file_that_several_bodies_name_is_read_once(tmp_path):
     assert spec.obstacles[-1].mesh is spec.obstacles[-2].mesh is spec.parts[0].mesh
 
 
+def test_a_file_that_is_refused_is_read_once_and_refused_wherever_it_is_named(tmp_path, monkeypatch):
+    read = []
+    monkeypatch.setattr(body_mesh, "read_mesh", lambda path: read.append(path) or read_mesh(path))
+    more = '\n[[obstacles]]\nname = "o"\nshape = "mesh"\nfile = "part.stl"\npose_mm_deg = [0, 900, 100, 0, 0, 0]\n'
+    path = cell(tmp_path, OPEN, more=more)
+    with pytest.raises(FileFault) as caught:
+        read_cell_file(path)
+    assert [fault.code for fault in caught.value.all] == ["RBL644"] * 2
+    assert len({str(fault) for fault in caught.value.all}) == 2
+    assert len(read) == 1
+
+
 def test_a_file_in_a_folder_of_the_cell_and_an_obj(tmp_path):
     (tmp_path / "meshes").mkdir()
     vertices = [f"v {x!r} {y!r} {z!r}" for x, y, z in BOX.vertices.tolist()]
@@ -76,10 +91,6 @@ def test_a_file_in_a_folder_of_the_cell_and_an_obj(tmp_path):
 
 def nan_stl():
     return b"solid\n" + b"vertex 0 0 nan\nvertex 1 0 0\nvertex 1 1 0\n"
-
-
-INWARDS = Mesh(vertices=BOX.vertices, faces=BOX.faces[:, ::-1])
-OPEN = Mesh(vertices=BOX.vertices, faces=BOX.faces[1:])
 
 
 @pytest.mark.parametrize(
