@@ -12,6 +12,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import Any, TypeVar
 
+from runtime.cell.holding import weakness
 from runtime.cell.mesh_keys import MeshFile, MeshKeys
 from runtime.cell.resting import Box, unrest
 from runtime.cell.sensor_file import SensorFile, read_sensor_file
@@ -96,7 +97,8 @@ class CameraFile(Record):
 class CellFile(Record):
     """A cell file and its ``text``. ``home`` is deg, of a sliding axis mm. ``tools``, ``frames``: poses (6,) mm and
     deg by name, FLANGE and WORLD among them; ``controller``: the settings of ``[controller]``; ``doubts``: parts that
-    cannot rest where they are (RBL640) and meshes that contacts fill (RBL645); ``meshes``: the files of meshes."""
+    cannot rest where they are (RBL640) or are heavy for the hand (RBL646, RBL647), and meshes that contacts fill
+    (RBL645); ``meshes``: the files of meshes."""
 
     path: str
     text: str
@@ -177,7 +179,12 @@ def parse_cell_file(source: Source, folder: Path | None = None) -> CellFile:
         controller=controller,
         camera=camera,
         meshes=meshes.names,
-        doubts=(*_hollow(fixed, obstacles, "obstacle"), *_hollow(lying, parts, "part"), *_doubts(lying, fixed, parts)),
+        doubts=(
+            *_hollow(fixed, obstacles, "obstacle"),
+            *_hollow(lying, parts, "part"),
+            *_doubts(lying, fixed, parts),
+            *_heavy(hand, lying, parts),
+        ),
     )
 
 
@@ -208,6 +215,14 @@ def _hollow(bodies: Sequence[PartFile | ObstacleFile], items: list[Table], kind:
         if body.mesh is not None
     ]
     return [each for each in doubts if each is not None]
+
+
+def _heavy(hand: HandFile, parts: tuple[PartFile, ...], items: list[Table]) -> Iterator[FileFault]:
+    """Yield RBL646 or RBL647 for every part that the hand holds without a reserve, or not at all."""
+    for part, item in zip(parts, items, strict=True):
+        if found := weakness(hand.kind, hand.grip_force_n, part.mass_kg, part.friction):
+            code, why = found
+            yield item.fault(code, f"part '{part.name}' {why}", key="mass_kg")
 
 
 def _box(kind: str, body: PartFile | ObstacleFile) -> Box:

@@ -132,4 +132,18 @@ register(
         remedy="Put it together from several parts or obstacles that are convex, or, where the hull will do, state "
         "filled = true.",
     ),
+    Code(
+        code="RBL646",
+        name="grip-without-reserve",
+        meaning="The hand holds a part with less than twice its weight: a fast move or a grip at its end may lose it.",
+        remedy="Give the hand more force (grip_force_n, holding_force_n), or move with less ACCEL; what the hand never "
+        "lifts can be an obstacle.",
+    ),
+    Code(
+        code="RBL647",
+        name="grip-too-weak",
+        meaning="The hand cannot hold a part of the cell: its force is less than the weight of the part.",
+        remedy="Correct mass_kg, friction and the force of the hand (grip_force_n, holding_force_n); what the hand "
+        "never lifts can be an obstacle.",
+    ),
 )
