@@ -3,6 +3,7 @@
 At the end of a run its processor time is printed by folder (``tests/processor_time.py``).
 """
 
+import gc
 import os
 
 import pytest
@@ -31,15 +32,31 @@ def pytest_addoption(parser):
     )
 
 
+@pytest.hookimpl(wrapper=True)
+def pytest_collection():
+    """Nothing of what is collected is garbage until the end, so that looking for it again and again finds nothing."""
+    gc.disable()
+    try:
+        return (yield)
+    finally:
+        gc.freeze()
+        gc.enable()
+
+
 @pytest.hookimpl(optionalhook=True)
 def pytest_xdist_make_scheduler(config, log):
-    """What a file sets up is set up once: its tests run in one process, and so do those of some files together."""
+    """What a file sets up is set up once: its tests run in one process, and so do those of some files together.
+
+    Files begin in the order of their folders: the last ones, of ``runtime``, are short, so that
+    both processes end at about the same time.
+    """
     from xdist.scheduler import LoadFileScheduling
 
     class Shared(LoadFileScheduling):
         def _split_scope(self, nodeid):
             return next((shared for shared in SHARED if shared in nodeid), super()._split_scope(nodeid))
 
+    config.option.loadscopereorder = False
     return Shared(config, log)
 
 

@@ -12,6 +12,7 @@ import pytest
 from tests import steps
 from tests.arch import parsed
 from tests.arch.parsed import nodes_of
+from tests.together import together
 
 TESTS = Path(__file__).parents[1]
 CLOCKS = {
@@ -85,7 +86,7 @@ def too_short(value: ast.expr | None) -> bool:
     return isinstance(value, ast.Constant) and isinstance(value.value, int | float) and not value.value >= LEAST_S
 
 
-@pytest.mark.parametrize("name", sorted(path.relative_to(TESTS).as_posix() for path in TESTS.rglob("*.py")))
+@together("name", sorted(path.relative_to(TESTS).as_posix() for path in TESTS.rglob("*.py")))
 def test_no_test_reads_a_clock_or_ends_a_wait_early(name):
     found = faults(nodes_of(TESTS / name))
     assert bool(found) == (name in MEASURING), found

@@ -31,6 +31,7 @@ from runtime.core.faults import all_codes
 from runtime.robot.kinematics.chain import Chain
 from tests.arch.parsed import nodes_of
 from tests.robolang.helpers import cell_with
+from tests.together import together
 
 ROOT = Path(__file__).parents[2]
 CODES = ROOT / "docs" / "codes.md"
@@ -139,7 +140,7 @@ def resolve(dotted: str) -> object:
 # --- links, names, files ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name)
+@together("page", PAGES, ids=name)
 def test_links_lead_to_something(page):
     missing = []
     for target in LINK.findall(prose(page)):
@@ -164,7 +165,7 @@ def lost(page: Path, text: str) -> list[str]:
     return [f"{path}#{anchor}" for path, linked, anchor in pages if anchor not in headings(linked)]
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name)
+@together("page", PAGES, ids=name)
 def test_links_lead_to_headings(page):
     assert lost(page, prose(page)) == []
 
@@ -188,7 +189,7 @@ def test_every_page_is_reached_from_the_readme():
     assert [name(page) for page in PAGES if page not in reached] == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name)
+@together("page", PAGES, ids=name)
 def test_names_of_the_code_exist(page):
     wrong = []
     for dotted in DOTTED.findall(prose(page)):
@@ -231,7 +232,7 @@ def gone(text: str) -> list[str]:
     return missing + [word for word, pair in pairs if pair and pair[2] not in members().get(pair[1], {pair[2]})]
 
 
-@pytest.mark.parametrize("page", [*PAGES, *TEMPLATES], ids=name)
+@together("page", [*PAGES, *TEMPLATES], ids=name)
 def test_paths_modules_and_members_exist(page):
     """The history alone may name what is gone: what CHANGELOG.md says of an edition was true of that edition."""
     if page.name != "CHANGELOG.md":
@@ -245,7 +246,7 @@ def test_a_path_a_module_and_a_member_that_are_gone_are_noticed():
     assert gone(now) == []
 
 
-@pytest.mark.parametrize("page", PAGES, ids=name)
+@together("page", PAGES, ids=name)
 def test_files_and_tests_exist(page):
     text = page.read_text("utf-8")
     missing = []

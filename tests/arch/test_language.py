@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 
 from tests.arch.parsed import nodes_of
+from tests.together import together
 
 ROOT = Path(__file__).parents[2]
 WORDS = {
@@ -91,7 +92,7 @@ def test_messages_and_help_are_plain(package):
     assert {path: dict(words) for path in code(package) if (words := found(texts(path)))} == {}
 
 
-@pytest.mark.parametrize("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
+@together("page", PAGES, ids=lambda page: page.relative_to(ROOT).as_posix())
 def test_pages_are_plain(page):
     assert found(re.sub(r"^```.*?^```", "", page.read_text("utf-8"), flags=re.MULTILINE | re.DOTALL)) == {}
 

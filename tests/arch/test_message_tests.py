@@ -13,6 +13,7 @@ from pathlib import Path
 import pytest
 
 from tests.arch import parsed
+from tests.together import together
 
 TESTS = Path(__file__).parents[1]
 CHECKED = [path for path in sorted(TESTS.rglob("test_*.py")) if path.parent.name not in ("arch", "bench")]
@@ -59,7 +60,7 @@ def compared_in(path: Path) -> list[tuple[int, str]]:
     return compared(parsed.nodes_of(path))
 
 
-@pytest.mark.parametrize("path", CHECKED, ids=lambda path: path.relative_to(TESTS).as_posix())
+@together("path", CHECKED, ids=lambda path: path.relative_to(TESTS).as_posix())
 def test_no_prose_of_a_message_is_compared(path):
     name = path.relative_to(TESTS).as_posix()
     found = compared_in(path)

@@ -7,9 +7,8 @@ shapes has the marker.
 import ast
 from pathlib import Path
 
-import pytest
-
 from tests.arch.parsed import nodes, nodes_of
+from tests.together import together
 
 TESTS = Path(__file__).parents[1]
 MODULES = [path for path in sorted(TESTS.rglob("test_*.py")) if path != Path(__file__)]
@@ -25,7 +24,7 @@ def names_the_plant(found: list[ast.AST]) -> bool:
     return False
 
 
-@pytest.mark.parametrize("path", MODULES, ids=lambda path: path.relative_to(TESTS).as_posix())
+@together("path", MODULES, ids=lambda path: path.relative_to(TESTS).as_posix())
 def test_what_makes_the_plant_of_mujoco_has_the_marker(path):
     text = path.read_text("utf-8")
     assert "mark.physics" in text or not names_the_plant(nodes_of(path))

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from tests.arch.parsed import nodes, nodes_of
+from tests.together import together
 
 ROOT = Path(__file__).parents[2]
 FILES = sorted((ROOT / "runtime").rglob("*.py"))
@@ -41,7 +42,7 @@ def left_to_the_processor(found):
                 yield node.lineno, node.attr
 
 
-@pytest.mark.parametrize("file", FILES, ids=lambda file: file.relative_to(ROOT).as_posix())
+@together("file", FILES, ids=lambda file: file.relative_to(ROOT).as_posix())
 def test_a_run_leaves_no_sum_to_the_processor(file):
     name = file.relative_to(ROOT).as_posix()
     found = [each for each in left_to_the_processor(nodes_of(file)) if (name, each[1]) not in ALLOWED]

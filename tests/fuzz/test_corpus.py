@@ -7,6 +7,7 @@ import pytest
 from tests.fuzz import targets
 from tests.fuzz.targets import SEEDS, TARGETS
 from tests.steps import calls
+from tests.together import together
 
 FOLDER = Path(__file__).with_name("corpus")
 PROGRAMS = Path(__file__).parents[2] / "programs"
@@ -23,7 +24,7 @@ def what_is_made_once_is_made():
         targets.run(target, b"10 MOVE P1\n")
 
 
-@pytest.mark.parametrize("path", CORPUS, ids=lambda path: f"{path.parent.name}/{path.name}")
+@together("path", CORPUS, ids=lambda path: f"{path.parent.name}/{path.name}")
 def test_an_input_of_the_corpus_breaks_no_promise(path):
     data = path.read_bytes()
     for target in TARGETS:

@@ -23,6 +23,7 @@ from tests.campaign import size
 from tests.robolang.helpers import cell_with
 from tests.robolang.test_bad_inputs import GOLDEN, GOOD
 from tests.runtime.from_texts import load_cell
+from tests.together import together
 
 ROOT = Path(__file__).parents[2]
 NUMBER = size(10_000, 2000)
@@ -92,7 +93,7 @@ def test_a_finding_outside_its_text_is_noticed(span):
 # --- programs --------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("text", CATALOGUE, ids=range(len(CATALOGUE)))
+@together("text", CATALOGUE)
 def test_the_catalogue_is_located(text):
     assert_located(text, lint(Source("p.rbl", text), cell_with(points=POINTS)))
 

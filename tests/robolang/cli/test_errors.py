@@ -10,6 +10,7 @@ from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault, all_codes
 from runtime.core.tomlfile import Source
 from tests.messages import heads
+from tests.together import together
 
 
 def left_with(error):
@@ -21,7 +22,7 @@ def left_with(error):
 EXPECTED = {"1": 1, "2": 1, "3": 2, "40": 1, "4": 3, "5": 3, "6": 2, "7": 2, "8": 2, "9": 70}
 
 
-@pytest.mark.parametrize("code", [entry.code for entry in all_codes()])
+@together("code", [entry.code for entry in all_codes()])
 def test_every_registered_code_has_the_exit_code_of_its_group(code):
     special = {
         "RBL301": 1,

@@ -7,6 +7,7 @@ import robolang.project.project as _registers_its_codes  # noqa: F401
 from runtime.core.faults import all_codes, lookup
 from tests.messages import fields
 from tests.robolang.cli.commands import ROOT, flat, robolang, shell
+from tests.together import together
 
 
 @pytest.mark.parametrize("word", ["RBL412", "rbl412", "412", "wrist-singularity", " RBL412 "])
@@ -17,7 +18,7 @@ def test_a_code_is_explained(word):
     assert max(map(len, text.splitlines())) <= 80
 
 
-@pytest.mark.parametrize("entry", all_codes(), ids=lambda entry: entry.code)
+@together("entry", all_codes(), ids=lambda entry: entry.code)
 def test_every_code_has_a_meaning_and_says_what_to_do(entry):
     words = flat(robolang("explain", entry.code).stdout)
     assert flat(entry.meaning) in words

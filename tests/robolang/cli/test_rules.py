@@ -3,12 +3,11 @@
 import json
 import re
 
-import pytest
-
 from robolang.lint.registry import codes, rules
 from runtime.core.faults import lookup
 from tests.robolang.cli.commands import flat, robolang
 from tests.robolang.cli.test_check import modules_after
+from tests.together import together
 
 
 def test_every_rule_is_in_the_table():
@@ -36,7 +35,7 @@ def test_json_holds_the_text_of_the_pages():
     assert all(item["why"] and item["example"] and item["instead"] for item in found)
 
 
-@pytest.mark.parametrize("code", list(rules()))
+@together("code", list(rules()))
 def test_a_rule_is_explained_with_its_example(code):
     text, known = robolang("explain", code).stdout, rules()[code]
     assert text.startswith(f"{code} {known.entry.name}\n\n")

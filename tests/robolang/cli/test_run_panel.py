@@ -3,6 +3,7 @@
 import io
 import re
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import pytest
@@ -19,6 +20,7 @@ from runtime.robot.model.axis_kind import REVOLUTE
 from tests.campaign import size, some
 from tests.robolang.cli.commands import dry
 from tests.robolang.pendant.terminal import Terminal
+from tests.together import together
 
 JOINTS = tuple(
     JointShown(name=f"J{k}", value=-180.0 + 60.0 * k, unit="deg", share=k / 7.0, torque_pct=(-1) ** k * 16.0 * k)
@@ -47,11 +49,17 @@ def painted(shown, width, height, encoding="utf-8"):
     return re.sub(r"\x1b\[[0-9;]*m", "", capture.get()).splitlines()
 
 
-@pytest.mark.parametrize("encoding", ["utf-8", "ascii"])
-@pytest.mark.parametrize("width", [10, 20, 40, 60, 80, 200])
-@pytest.mark.parametrize("height", [2, 3, 4, 9, 10, 24])
-@pytest.mark.parametrize("left", [None, PANEL.left, TimeLeft(seconds=1799.9, waiting=True)])
-def test_it_fits_every_terminal(width, height, left, encoding):
+@together(
+    "case",
+    product(
+        [10, 20, 40, 60, 80, 200],
+        [2, 3, 4, 9, 10, 24],
+        [None, PANEL.left, TimeLeft(seconds=1799.9, waiting=True)],
+        ["utf-8", "ascii"],
+    ),
+)
+def test_it_fits_every_terminal(case):
+    width, height, left, encoding = case
     shown = replace(PANEL, left=left, text="PRINT " + '"日本"' * 40, joints=(*JOINTS[1:], NO_NUMBER))
     lines = painted(shown, width, height, encoding)
     assert len(lines) == (9 if height >= 10 else 3 if height >= 4 else 1)

@@ -4,12 +4,11 @@ import subprocess
 import sys
 from pathlib import Path
 
-import pytest
-
 from robolang.lint.pages import index, page, pages, write
 from robolang.lint.registry import rules
 from runtime.core.faults import lookup
 from tests.steps import HANG_S
+from tests.together import together
 
 ROOT = Path(__file__).parents[3]
 FOLDER = ROOT / "docs" / "rules"
@@ -23,7 +22,7 @@ def test_the_pages_are_current():
     assert old == [], "run: python -m robolang.lint.pages"
 
 
-@pytest.mark.parametrize("code", list(rules()))
+@together("code", list(rules()))
 def test_a_page_has_every_part(code):
     text, known = page(code), rules()[code]
     headings = [line for line in text.splitlines() if line.startswith("#")]

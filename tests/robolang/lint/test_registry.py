@@ -20,6 +20,7 @@ from runtime.core.faults import lookup
 from runtime.core.tomlfile import FileFault
 from tests.robolang.helpers import cell_with
 from tests.robolang.lint.helpers import POINTS
+from tests.together import together
 
 OF_THE_MOTION = {
     *("RBL410", "RBL411", "RBL412", "RBL414", "RBL416", "RBL419", "RBL421", "RBL422", "RBL423", "RBL424", "RBL425"),
@@ -116,13 +117,13 @@ def test_a_fix_that_is_promised_makes_the_correction_of_the_example(item):
     assert fixed.source.text == item.good
 
 
-@pytest.mark.parametrize("item", [item for item in RULES if not item.fix], ids=name)
+@together("item", [item for item in RULES if not item.fix], ids=name)
 def test_a_rule_without_a_fix_has_none(item):
     if item.code != "RBL104" and not item.points:
         assert all(found.fix is None for found in lint(Source("pick.rbl", item.bad), cell_with(points=POINTS)))
 
 
-@pytest.mark.parametrize("item", RULES, ids=name)
+@together("item", RULES, ids=name)
 def test_the_texts_are_sentences(item):
     for text in filter(None, (item.why, item.fix)):
         assert text[0].isupper()

@@ -15,6 +15,7 @@ from robolang.pendant.lexer import PromptLexer, coloured
 from robolang.pendant.marks import Mark, parts
 from robolang.pendant.pygments_lexer import RobolangLexer
 from robolang.syntax.keywords import KEYWORDS
+from tests.together import together
 
 ROOT = Path(__file__).parents[3]
 PROGRAMS = sorted((ROOT / "programs").rglob("*.rbl"))
@@ -51,7 +52,7 @@ def test_parts_of_a_line(line, expected):
     assert marked(line) == expected
 
 
-@pytest.mark.parametrize("word", sorted(KEYWORDS))
+@together("word", sorted(KEYWORDS))
 def test_every_keyword_of_the_language_is_one(word):
     assert marked(word)[0] == (word, Mark.KEYWORD)
 

@@ -35,6 +35,7 @@ from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
 from robolang.syntax.parser import parse
 from tests.robolang.helpers import cell_with, source
 from tests.robolang.syntax.foreign_lines import LINES, MORE
+from tests.together import together
 
 LANGUAGES = ("KRL", "RAPID", "MELFA", "INFORM", "TP", "KAREL", "URScript", "AS", "PacScript", "VAL3", "V+")
 NODES = {
@@ -88,7 +89,7 @@ def test_the_figure_has_sixty_lines_of_ten_languages_and_more():
     assert len({line.text for line in (*LINES, *MORE)}) == 110
 
 
-@pytest.mark.parametrize("line", [*LINES, *MORE], ids=lambda line: f"{line.language}: {line.text[:30]}")
+@together("line", [*LINES, *MORE], ids=lambda line: f"{line.language}: {line.text[:30]}")
 def test_a_line_of_another_language_has_one_finding_with_the_statement_to_write(line):
     (item,) = found(line.text)
     place = line.text.index(line.at) if line.at else len(line.text)
@@ -115,7 +116,7 @@ def test_the_table_has_words_of_all_languages():
         assert len(of) >= 12, language
 
 
-@pytest.mark.parametrize("each", words.every(), ids=lambda each: f"{each.words[:20]} {each.languages[0]}")
+@together("each", words.every(), ids=lambda each: f"{each.words[:20]} {each.languages[0]}")
 def test_what_a_word_stands_for_is_read_and_does_the_same(each):
     assert each.write or each.note or each.missing
     nodes = statements(each.write)
@@ -133,7 +134,7 @@ def test_what_a_word_stands_for_is_read_and_does_the_same(each):
         assert nodes[0].word == ("TOOL" if each.means == meanings.TOOL else "FRAME")
 
 
-@pytest.mark.parametrize("word", sorted(words.instructions()))
+@together("word", sorted(words.instructions()))
 def test_no_word_of_the_table_gets_a_guess_by_its_letters(word, monkeypatch):
     for module in (keywords, hints, expression_check):
         monkeypatch.setattr(module, "near", lambda *_, **__: "GUESSED")
@@ -167,7 +168,7 @@ def test_a_word_that_stands_for_several_things_names_them_all(word, parts):
 # --- whole lines ------------------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("shape", SHAPES, ids=lambda shape: shape.example)
+@together("shape", SHAPES, ids=lambda shape: shape.example)
 def test_the_example_of_a_shape_has_that_shape(shape):
     result = proposal(shape.example)
     assert result is not None

@@ -15,6 +15,7 @@ from robolang.syntax.statements import OPTIONS, STATEMENTS, declaration
 from robolang.syntax.tree import fields
 from tests.robolang import generator
 from tests.robolang.helpers import parsed
+from tests.together import together
 
 KINDS = [*get_args(ast.Expression), *get_args(ast.Option), *get_args(ast.Statement), ast.Target, ast.Line, ast.Comment]
 
@@ -63,7 +64,7 @@ def test_a_copy_has_what_was_changed_and_all_else():
         ast.replace(node, other=1)
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@together("kind", KINDS)
 def test_nodes_take_their_fields_by_keyword_only(kind):
     with pytest.raises(TypeError):
         kind(1)
