@@ -32,6 +32,7 @@ def step(
     axis: int,
     *,
     size_deg: float = 0.5,
+    size_mm: float = 0.5,
     joints: Sequence[float] | None = None,
     payload: PayloadLike | None = None,
     load: PayloadLike | None = None,
@@ -46,6 +47,7 @@ def step(
 ) -> StepResult:
     """Measure the step response of an axis, from 1, at a posture in deg; angles of the result are in rad.
 
+    ``size_mm`` is the step of an axis that slides, with mm in the posture, and m, N and kg in the result.
     ``payload`` is carried and ``load`` declared: mass kg and centre of gravity x, y, z mm; None: what is carried.
     ``tool``: the tool point in the flange, mm. ``Fault`` RBL703 for an argument, RBL516 where the arm touched
     something.
@@ -60,7 +62,7 @@ def step(
         robot=spec,
         axis=axis - 1,
         q=joints_of(joints, spec),
-        size=size_deg * DEG,
+        size=size_mm * MM if _slides(spec, axis) else size_deg * DEG,
         carried=carried,
         declared=carried if load is None else payload_of(load, spec, "load"),
         profile=in_force.profile,
@@ -74,7 +76,12 @@ def step(
     try:
         return step_once(request)
     except ValueError as error:
-        refuse("axis, joints or size_deg", str(error))
+        refuse("axis, joints or size", str(error))
+
+
+def _slides(spec: RobotSpec, axis: int) -> bool:
+    # an axis that the robot has not is refused with the posture
+    return 1 <= axis <= spec.n and spec.axes[axis - 1].kind.slides
 
 
 class Comparison(list[dict[str, Any]]):

@@ -20,22 +20,23 @@ from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robolang.execution.lowering import payload
 from robolang.execution.result import StatementRun
 from robolang.execution.session import Session
 from robolang.interpreter.effects import Effect, SetPayload
 from robolang.project.project import Project, load_project
-from robolang.project.turning import only_turning
 from runtime.cell.cell import CellSpec
 from runtime.core.frames import Array
 from runtime.core.linear import norm
 from runtime.core.units import DEG, MM, badness
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
+from runtime.robot.model.spec import RobotSpec
 
 BAND = 0.02
 LEAST = 1.0 * DEG
-"""Shortest approach whose overshoot is given in percent, rad."""
+"""Shortest approach whose overshoot is given in percent, rad; as many mm of an axis that slides as this has deg."""
 WRONG_SHARE = 0.3
 """By how much of the rated payload the wrong LOAD is wrong."""
 STARVED_COST_MS = 50.0
@@ -43,19 +44,22 @@ STARVED_COST_MS = 50.0
 
 _OF_ALARM = ("code", "message", "file", "line", "column", "number", "time_s")
 
+_OF_SLIDES = ("joint_error_mm", "joint_rms_mm", "droop_mm")
 FIGURES = (
     "overshoot_pct",
     "settling_s",
     "joint_error_deg",
     "joint_rms_deg",
+    *_OF_SLIDES[:2],
     "tool_error_mm",
     "tool_rms_mm",
     "path_deviation_mm",
     "droop_deg",
+    _OF_SLIDES[2],
     "per_axis",
     "moves",
 )
-"""What is measured of a variant."""
+"""What is measured of a variant, ``_OF_SLIDES`` on an arm with an axis that slides."""
 
 Options = dict[str, tuple[str, Any]]
 
@@ -143,7 +147,6 @@ class Request:
         project = load_project(
             self.program, self.cell, self.robot, profile=self.profile, options={**self.options, **changed}
         )
-        only_turning(project.cell.robot, "a comparison")
         # most variants are wrong on purpose: what supervision would stop is what is to be seen; the command says so
         watched = project.profile.supervision
         return project.with_profile(replace(project.profile, supervision=replace(watched, enabled=False)))
@@ -187,7 +190,12 @@ def run_variant(request: Request, variant: Variant) -> dict[str, Any]:
         "sim_time_s": result.report["sim_time_s"],
         "motion": _digest(result.log),
         "idle": _idle(variant, project.profile == request.project(BASE).profile, loads),
-        **measures(result.log, session.controller.tool_poses(result.log["q_cmd"]), session.record.statements),
+        **measures(
+            result.log,
+            session.controller.tool_poses(result.log["q_cmd"]),
+            session.record.statements,
+            project.cell.robot,
+        ),
     }
 
 
@@ -221,7 +229,8 @@ def _without_equals(rows: list[dict[str, Any]]) -> list[dict[str, Any]]:
             idle, reason = [""] * parts, f"the arm moves exactly as with {BASE.title}"
         nothing = variant != BASE and len(idle) == parts
         note = f"changes nothing: {reason}" if nothing else reason
-        found.append({**row, **(dict.fromkeys(FIGURES) if nothing else {}), "changes": not nothing, "note": note})
+        none = dict.fromkeys(row.keys() & set(FIGURES)) if nothing else {}
+        found.append({**row, **none, "changes": not nothing, "note": note})
     return found
 
 
@@ -276,35 +285,63 @@ def wrong_mass(mass: float, rated: float) -> float:
 # --- measures --------------------------------------------------------------------------------------------------------
 
 
-def measures(log: Mapping[str, Array], X_cmd: Array, statements: list[StatementRun]) -> dict[str, Any]:
-    """Return the figures of a run, in deg, mm, s and %, over all its MOVEs; None where there is none."""
-    moves = [run for run in statements if run.begun and run.path is not None and run.end_tick > run.first_tick]
+def measures(
+    log: Mapping[str, Array], X_cmd: Array, statements: list[StatementRun], robot: RobotSpec
+) -> dict[str, Any]:
+    """Return the figures of a run, in deg, mm, s and %, over all its MOVEs; None where there is none.
+
+    ``per_axis`` and ``moves`` of an arm with an axis that slides have the unit of each axis, ``units``, and no deg in
+    their keys.
+    """
+    slides = robot.slides
+    keys = [key for key in FIGURES if key not in (() if slides.any() else _OF_SLIDES)]
+    moves = _moves(statements)
     if not moves:
-        return dict.fromkeys(FIGURES)
+        return dict.fromkeys(keys)
     ticks = np.concatenate([np.arange(run.first_tick, run.end_tick) for run in moves])
-    joint = np.abs(log["q_cmd"][ticks] - log["q_link"][ticks]) / DEG
+    joint = np.abs(log["q_cmd"][ticks] - log["q_link"][ticks]) / robot.units
     p_tool = log["X_world_tool"][:, :3, 3]
     # a sensor takes the tool off the programmed line on purpose; that is no deviation
     p_line = p_tool - log["seam_deviation"][:, :3]
     tool = np.linalg.norm(X_cmd[ticks, :3, 3] - p_tool[ticks], axis=1) / MM
-    rows = [_move(run, log, p_line) for run in moves]
-    droop = np.array([row["droop_deg"] for row in rows])
-    return {
+    droop_key = "droop" if slides.any() else "droop_deg"
+    rows = [_move(run, log, p_line, robot, droop_key) for run in moves]
+    per_axis = {
+        "joint_error": joint.max(axis=0),
+        "joint_rms": np.sqrt((joint**2).mean(axis=0)),
+        "droop": np.abs(np.array([row[droop_key] for row in rows])).max(axis=0),
+    }
+    found = {
         "overshoot_pct": _worst_overshoot(rows),
         "settling_s": _longest_settling(rows),
-        "joint_error_deg": float(joint.max()),
-        "joint_rms_deg": float(np.sqrt((joint**2).mean(axis=0)).max()),
+        **_by_unit(per_axis, slides),
         "tool_error_mm": float(tool.max()),
         "tool_rms_mm": float(np.sqrt((tool**2).mean())),
         "path_deviation_mm": max((row["path_deviation_mm"] for row in rows), key=badness),
-        "droop_deg": float(np.abs(droop).max()),
-        "per_axis": {
-            "joint_error_deg": joint.max(axis=0).tolist(),
-            "joint_rms_deg": np.sqrt((joint**2).mean(axis=0)).tolist(),
-            "droop_deg": np.abs(droop).max(axis=0).tolist(),
-        },
+        "per_axis": _axes(per_axis, robot),
         "moves": rows,
     }
+    return {key: found[key] for key in keys}
+
+
+def _moves(statements: list[StatementRun]) -> list[StatementRun]:
+    """Return the statements that moved the arm along a path."""
+    return [run for run in statements if run.begun and run.path is not None and run.end_tick > run.first_tick]
+
+
+def _by_unit(per_axis: dict[str, Array], slides: NDArray[np.bool_]) -> dict[str, float | None]:
+    """Return the largest values of the axes that turn, and of those that slide, by key; None where there are none."""
+    found: dict[str, float | None] = {}
+    for name, of in per_axis.items():
+        found[f"{name}_deg"] = None if slides.all() else float(of[~slides].max())
+        found[f"{name}_mm"] = float(of[slides].max()) if slides.any() else None
+    return found
+
+
+def _axes(per_axis: dict[str, Array], robot: RobotSpec) -> dict[str, Any]:
+    if not robot.slides.any():
+        return {f"{name}_deg": of.tolist() for name, of in per_axis.items()}
+    return {"units": [axis.kind.unit for axis in robot.axes], **{name: of.tolist() for name, of in per_axis.items()}}
 
 
 def _worst_overshoot(moves: list[dict[str, Any]]) -> float | None:
@@ -319,18 +356,21 @@ def _longest_settling(moves: list[dict[str, Any]]) -> float | None:
     return None if None in settled else max(settled)  # a largest time beside a move that never settles would mislead
 
 
-def _move(run: StatementRun, log: Mapping[str, Array], p_tool: Array) -> dict[str, Any]:
+def _move(
+    run: StatementRun, log: Mapping[str, Array], p_tool: Array, robot: RobotSpec, droop_key: str
+) -> dict[str, Any]:
     span = slice(run.first_tick, run.end_tick)
     assert run.path is not None  # only moves get here
     q_cmd, q_link, t = log["q_cmd"][span], log["q_link"][span], log["t"][span]
-    overshoot, settling = last_approach(q_cmd, q_link, t)
+    scale = robot.bound(1.0)
+    overshoot, settling = last_approach(q_cmd / scale, q_link / scale, t)
     return {
         "line": run.origin.line,
         "number": run.origin.number,
         "overshoot_pct": overshoot,
         "settling_s": settling,
         "path_deviation_mm": float(run.path.deviation(p_tool[span]).max()) / MM,
-        "droop_deg": ((q_cmd[-1] - q_link[-1]) / DEG).tolist(),
+        droop_key: ((q_cmd[-1] - q_link[-1]) / robot.units).tolist(),
         "left_mm": norm(run.path.X_end[:3, 3] - p_tool[span][-1]) / MM,
     }
 
@@ -338,8 +378,8 @@ def _move(run: StatementRun, log: Mapping[str, Array], p_tool: Array) -> dict[st
 def last_approach(q_cmd: Array, q_link: Array, t: Array) -> tuple[float | None, float | None]:
     """Return overshoot of the worst axis, %, and the time from the end of the command to within 2 %, s.
 
-    q_cmd, q_link (N, n) rad, t (N,) s of one move. Overshoot is None when no axis approaches far enough, settling None
-    when an axis is still outside at the end of the statement.
+    q_cmd, q_link (N, n) rad (a mm counts as a deg), t (N,) s of one move. Overshoot is None when no axis approaches far
+    enough, settling None when an axis is still outside at the end of the statement.
     """
     end = q_cmd[-1]
     # not one row is at the end where it is NaN; where all are, argmin gives 0 and the modulus row 0

@@ -114,7 +114,7 @@ class Grid:
 def plan(request: Request, payload: Payload, axis: int) -> Test:
     """Return the test motions of an axis; ``Fault`` RBL420 when they would leave a limit of the robot."""
     spec = request.robot
-    only_turning(spec, "an identification")
+    only_turning(spec, "an identification", "its motions and its file are in deg and kg m2")
     if not 0 <= axis < spec.n:
         raise Fault("RBL420", f"{spec.name} has the axes 1 to {spec.n}, no J{axis + 1}")
     model = _loaded(spec, payload)

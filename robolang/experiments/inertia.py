@@ -14,6 +14,7 @@ from runtime.core.frames import Array
 from runtime.dynamics.compensation import Compensation
 from runtime.dynamics.motor_inertia import link_chain, link_inertia, motor_side
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
+from runtime.robot.model.axis_kind import AxisKind
 from runtime.robot.model.payload import Payload
 from runtime.robot.model.spec import RobotSpec
 
@@ -23,7 +24,10 @@ POINTS = 121
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class AxisInertia:
-    """An axis (from 1): D and N^2 J at the joint, their sum over N^2 at the motor, kg m2; gravity torque N m."""
+    """An axis (from 1): D and N^2 J at the joint, their sum over N^2 at the motor, kg m2; gravity torque N m.
+
+    Of an axis that slides D and N^2 J are masses, kg, and gravity is a force, N; at the motor it is an inertia again.
+    """
 
     axis: int
     link_inertia: float
@@ -37,12 +41,14 @@ class AxisInertia:
 class InertiaMap:
     """The inertia of ``axis`` over the ranges of two ``joints`` (all 0-based), the others as they are in ``q``.
 
-    ``x`` and ``y`` (N,) rad are angles of the first and of the second joint, ``link`` and ``motor`` (N, N) kg m2 the
-    inertia D at the joint and the total at the motor, one row per angle of the second joint.
+    ``x`` and ``y`` (N,) rad are angles of the first and of the second joint, of the ``kinds`` that they have (m of one
+    that slides); ``link`` and ``motor`` (N, N) kg m2 the inertia D at the joint and the total at the motor, one row per
+    angle of the second joint.
     """
 
     axis: int
     joints: tuple[int, int]
+    kinds: tuple[AxisKind, AxisKind]
     q: Array
     x: Array
     y: Array
@@ -80,24 +86,28 @@ def over_plane(spec: RobotSpec, axis: int, joints: tuple[int, int], q: Array, pa
     chain = link_chain(spec, payload)
     D = link_inertia(chain, grid)
     motor = motor_side(chain, D + spec_rotors(spec))
-    return InertiaMap(axis=axis, joints=joints, q=q, x=x, y=y, link=D[..., axis], motor=motor[..., axis])
+    kinds = spec.axes[joints[0]].kind, spec.axes[joints[1]].kind
+    return InertiaMap(axis=axis, joints=joints, kinds=kinds, q=q, x=x, y=y, link=D[..., axis], motor=motor[..., axis])
 
 
 def extremes(found: InertiaMap) -> dict[str, dict[str, Any]]:
     """Return the smallest and the largest inertia of a map with the two angles of each, plain types, SI and deg.
 
+    Of a joint that slides mm; then no key has deg in its name.
     Where many points have it, the first one stands for them.
     """
+    units = np.array([kind.size for kind in found.kinds])
+    key = "joints" if any(kind.slides for kind in found.kinds) else "joints_deg"
     places = {"smallest": int(np.argmin(found.motor)), "largest": int(np.argmax(found.motor))}
     out = {}
     for name, index in places.items():
         row, column = divmod(index, len(found.x))
-        angles = np.rad2deg([found.x[column], found.y[row]]) + 0.0
+        angles = np.array([found.x[column], found.y[row]]) / units + 0.0
         out[name] = {
             "link_inertia": float(found.link[row, column]),
             "motor_inertia": float(found.motor[row, column]),
             # converted back from radians, an angle of the grid is -157.33333333333334
-            "joints_deg": [float(f"{angle:.10g}") for angle in angles],
+            key: [float(f"{angle:.10g}") for angle in angles],
         }
     return out
 

@@ -17,12 +17,10 @@ import numpy as np
 
 from robolang.execution.rig import IdealArm, Rig, plant_of
 from robolang.project.project import builtin_cell
-from robolang.project.turning import only_turning
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose
-from runtime.core.units import DEG
 from runtime.dynamics.equations import axis_inertia
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.robot.model.arm_model import ArmModel, spec_rotors
@@ -85,6 +83,8 @@ class _Locked(_Substepped):
 class StepRequest:
     """One experiment: ``axis`` 0-based, posture ``q`` (n,) rad, ``size`` rad, ``carried`` and ``declared`` payloads.
 
+    Of an axis that slides they are m, here and in the result, forces N and inertias kg.
+
     ``ideal`` gives the drives no limits, ``locked`` holds the other axes fast (rigid arm only). ``tool`` is the tool
     point in the flange frame (3,) m, where the rated payload sits for fixed gains.
     """
@@ -128,7 +128,6 @@ def step(request: StepRequest) -> StepResult:
 
     ``Fault`` RBL516 where the arm touched itself or the floor: its response is not that of the servo then.
     """
-    only_turning(request.robot, "a step")
     _check(request)
     robot = ideal_drives(request.robot) if request.ideal else request.robot
     # a step is a following error of its whole size, which supervision would stop (RBL511)
@@ -145,7 +144,9 @@ def step(request: StepRequest) -> StepResult:
     _run(controller, HOLD_S)
     first = controller.recorder.tick
     controller.jump(request.q + request.size * np.eye(robot.n)[request.axis])
-    _run(controller, request.seconds, lost=max(_LOST * abs(request.size), np.pi))
+    # position errors count a mm as a deg
+    counted = abs(request.size) / robot.bound(1.0)[request.axis]
+    _run(controller, request.seconds, lost=float(np.maximum(_LOST * counted, np.pi)))
     _refuse_touch(request, controller)
     return _measure(request, controller, first)
 
@@ -160,7 +161,9 @@ def _check(request: StepRequest) -> None:
     for axis, value in [*enumerate(request.q), (request.axis, end)]:
         low, high = robot.lower[axis], robot.upper[axis]
         if not low <= value <= high:
-            raise ValueError(f"J{axis + 1} at {value / DEG:g} deg is outside {low / DEG:g} to {high / DEG:g} deg")
+            size, unit = robot.axes[axis].kind.size, robot.axes[axis].kind.unit
+            shown, ends = f"{value / size:g} {unit}", f"{low / size:g} to {high / size:g} {unit}"
+            raise ValueError(f"J{axis + 1} at {shown} is outside {ends}")
 
 
 def _cell(robot: RobotSpec, request: StepRequest) -> CellSpec:
@@ -201,7 +204,8 @@ def _measure(request: StepRequest, controller: Controller, first: int) -> StepRe
     last = response[-round(0.1 / tick_s) :]  # the last 0.1 s are taken as settled
     stable = not controller.alarms and len(response) * tick_s > 0.9 * request.seconds
     # at least 1e-4 rad, since a step of size 0 has no band
-    stable = stable and bool(np.ptp(last) <= max(BAND * abs(size), 1e-4))  # the run was cut short, or still moves
+    least = float(request.robot.bound(1e-4)[axis])
+    stable = stable and bool(np.ptp(last) <= max(BAND * abs(size), least))  # the run was cut short, or still moves
     model = ArmModel(request.robot)
     model.set_payload(request.carried)
     rotor = float(spec_rotors(request.robot)[axis])
@@ -231,23 +235,28 @@ def _measure(request: StepRequest, controller: Controller, first: int) -> StepRe
 
 
 def as_json(request: StepRequest, result: StepResult) -> dict[str, Any]:
-    """Return the figures of an experiment in plain types, in deg, s and %."""
+    """Return the figures of an experiment in plain types, in deg, s and %, of an axis that slides mm, N and kg.
+
+    The key of a figure names its unit; ``joints`` of an arm with such an axis are each in their own.
+    """
+    robot, kind = request.robot, request.robot.axes[request.axis].kind
+    inertia = kind.inertia.replace(" ", "_")
     percent = None if result.overshoot is None else result.overshoot * 100.0
     return {
-        "robot": request.robot.name,
+        "robot": robot.name,
         "axis": request.axis + 1,
-        "joints_deg": [float(x) for x in request.q / DEG],
-        "size_deg": request.size / DEG,
+        robot.joints_key: [float(x) for x in request.q / robot.units],
+        f"size_{kind.unit}": request.size / kind.size,
         "plant": request.plant,
         "ideal_drives": request.ideal,
         "others_locked": request.locked,
         "servo": request.profile.servo.mode,
-        "inertia_kg_m2": result.inertia,
-        "gain_inertia_kg_m2": result.gain_inertia,
+        f"inertia_{inertia}": result.inertia,
+        f"gain_inertia_{inertia}": result.gain_inertia,
         "overshoot_pct": percent,
         "settling_s": result.settling,
         "rise_s": result.rise,
-        "droop_deg": result.droop / DEG,
-        "peak_torque_nm": result.peak_torque,
+        f"droop_{kind.unit}": result.droop / kind.size,
+        kind.force_key.replace("max", "peak"): result.peak_torque,
         "stable": result.stable,
     }

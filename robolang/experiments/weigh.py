@@ -8,7 +8,8 @@ the exercise is a sum of sines, written into INA set-point by set-point. Axis i 
 so that every axis passes every angle in both directions, at many combinations of the others. The wrist axes swing by
 the whole amplitude, the last one by twice of it, since it turns the centre of gravity round in the torque of the one
 before; the main axes by a fifth, which shows their dry friction and leaves the tool near its place.
-An axis that feels no weight anywhere, such as an upright waist, stands still.
+An axis that feels no weight anywhere, such as an upright waist, stands still, and so does one that slides: the weight
+along it does not depend on where the centre of gravity is.
 
 Range, speed and acceleration of every axis are checked over all servo ticks before anything moves. Supervision runs,
 except for its checks of payload and collision: there is no LOAD that could be wrong. What the torques of the
@@ -20,9 +21,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from robolang.execution.rig import Rig, fitted, plant_of
-from robolang.project.turning import only_turning
 from runtime.cell.cell import CellSpec
 from runtime.control.controller import Controller
 from runtime.core.faults import Fault
@@ -46,7 +47,7 @@ LEAST = 2.0 * DEG
 MAIN, LAST = 0.2, 2.0
 """Share of the amplitude by which the main axes and the last one swing."""
 WRIST = 3
-"""First axis that counts as wrist."""
+"""Axes that turn before the first that counts as wrist."""
 SECONDS = 12.0
 RAMP_S = 1.5
 """Time in which the swing grows and dies away."""
@@ -123,11 +124,10 @@ def exercise_about(robot: RobotSpec, q: Array, profile: Profile, amplitude: floa
     RBL411 where an axis would leave its range, RBL404 where one would be too fast. Without an ``amplitude``, rad, each
     axis swings by what its limits leave; RBL411 when they leave nothing.
     """
-    only_turning(robot, "weighing")
     unit = _shape(robot, profile.period_s)
     swings = _share(robot) * (AMPLITUDE if amplitude is None else amplitude)
     if not swings.any():
-        raise Fault("RBL411", f"no axis of {robot.name} feels the weight of what it carries")
+        raise _nothing_felt(robot)
     fine = FineInterpolator(profile.ticks_per_cycle, profile.period_s, np.zeros(robot.n))
     limits = robot.per_axis("limits", "speed"), robot.per_axis("limits", "acceleration")
     most = np.min([limit / peak for limit, peak in zip(limits, fine.peaks(unit), strict=True)], axis=0)
@@ -144,6 +144,13 @@ def exercise_about(robot: RobotSpec, q: Array, profile: Profile, amplitude: floa
     else:
         _refuse(robot, q, swings, room, most, amplitude)
     return Exercise(offsets=frozen(unit * swings), amplitudes=frozen(swings))
+
+
+def _nothing_felt(robot: RobotSpec) -> Fault:
+    if not robot.slides.any():
+        return Fault("RBL411", f"no axis of {robot.name} feels the weight of what it carries")
+    message = f"no axis of {robot.name} that turns feels the weight of what it carries, which shows a centre of gravity"
+    return Fault("RBL411", message, "weigh it on a scale, and take the centre of gravity from its drawing")
 
 
 def _refuse(robot: RobotSpec, q: Array, swings: Array, room: Array, most: Array, amplitude: float) -> None:
@@ -173,6 +180,11 @@ def _refuse(robot: RobotSpec, q: Array, swings: Array, room: Array, most: Array,
             )
 
 
+def main_axes(robot: RobotSpec) -> NDArray[np.bool_]:
+    """Return which axes (n,) are main axes: the first ``WRIST`` that turn, and slides before or between them."""
+    return np.asarray(np.cumsum(~robot.slides) <= WRIST)
+
+
 def _share(robot: RobotSpec) -> Array:
     """Return by which share of the amplitude each axis swings (n,); 0 for one that never feels weight."""
     model = BodyModel(robot)
@@ -182,10 +194,10 @@ def _share(robot: RobotSpec) -> Array:
     for q in np.random.default_rng(560).uniform(robot.lower, robot.upper, (16, robot.n)):
         model.torque(q, zero, zero)
         felt = np.maximum(felt, np.abs(model.regressor(q)).max(axis=1))
-    share = np.where(np.arange(robot.n) < WRIST, MAIN, 1.0)
+    share = np.where(main_axes(robot), MAIN, 1.0)
     if robot.n > WRIST:
         share[-1] = LAST
-    return np.where(felt > FEELS, share, 0.0)
+    return np.where((felt > FEELS) & ~robot.slides, share, 0.0)
 
 
 def _shape(robot: RobotSpec, period_s: float) -> Array:
@@ -322,14 +334,18 @@ def _rounded(value: float, sd: float, most: int) -> str:
 
 
 def as_json(request: WeighRequest, result: WeighResult) -> dict[str, Any]:
-    """Return the figures in plain types, in kg, mm, deg and N m; a centre of gravity that is not known is None."""
+    """Return the figures in plain types, in kg, mm, deg and N m; a centre of gravity that is not known is None.
+
+    Of an arm with an axis that slides ``home`` stands in place of ``home_deg``; the axis itself stands still.
+    """
+    robot = request.cell.robot
     found, true = result.found, result.true
-    load = load_statement(found, request.cell.robot.rated_payload)
+    load = load_statement(found, robot.rated_payload)
     cog, sd = (None if x is None else [float(v) / MM for v in x] for x in (found.cog, found.cog_sd))
     return {
-        "robot": request.cell.robot.name,
+        "robot": robot.name,
         "plant": request.plant,
-        "home_deg": [float(x) for x in request.cell.home / DEG],
+        robot.joints_key.replace("joints", "home"): [float(x) for x in request.cell.home / robot.units],
         "seconds": result.seconds,
         "amplitudes_deg": [float(x) for x in result.exercise.amplitudes / DEG],
         "estimated": {"mass_kg": found.mass, "mass_sd_kg": found.mass_sd, "cog_mm": cog, "cog_sd_mm": sd},

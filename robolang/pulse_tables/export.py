@@ -125,7 +125,7 @@ def equipment(project: Project, request: ExportRequest) -> tuple[Machine, tuple[
                 f"the robot of the cell, {cell.robot.name}",
                 key="mechanism",
             )
-        only_turning(cell.robot, "an export of pulses")
+        only_turning(cell.robot, "an export of pulses", "its tables are in deg")
         machine = RobotArm(cell.robot, project.profile, cell.hand.X_flange_tool, cell.home)
         pulse = tuple(motor_pulse(axis.motor.gear_ratio) for axis in cell.robot.axes)
     if file is None:

@@ -22,6 +22,7 @@ from robolang.experiments.weigh import (
     Exercise,
     exercise_about,
     load_statement,
+    main_axes,
     weighed,
 )
 from runtime.control.controller import Controller
@@ -95,9 +96,9 @@ def _slowed(exercise: Exercise, start: Array, cap: SpeedCap, robot: RobotSpec) -
     axis that is then too slow to show its friction would spoil the rows of all others: of the main axes the one that is
     nearest to the base, which moves the tool most, stands still instead.
     """
-    main = np.array([axis < WRIST for axis in range(robot.n)])
+    main = main_axes(robot)
     for still in range(WRIST + 1):
-        used = np.arange(robot.n) >= still
+        used = np.cumsum(~robot.slides) > still
         share = np.where(main, _largest(exercise.offsets * (main & used), start, cap, _MAIN), 0.0)
         wrist = _largest(exercise.offsets * ~main, start, cap, 1.0, exercise.offsets * share * used)
         share = np.where(main, share * used, wrist)

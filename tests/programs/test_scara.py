@@ -1,5 +1,6 @@
 """The SCARA picks a part with MuJoCo; poses that four axes cannot take are refused before anything moves."""
 
+import json
 from pathlib import Path
 
 import numpy as np
@@ -57,8 +58,32 @@ def test_joints_and_limits_are_in_mm(tmp_path):
     assert code == "RBL309"
 
 
-@pytest.mark.parametrize("words", [["compare"], ["weigh"]], ids=str)
-def test_commands_whose_tables_are_in_degrees_refuse_a_slide(words):
-    error = robolang(*words, FOLDER / "pick.rbl", code=2).stderr
+def test_what_is_in_degrees_alone_refuses_a_slide_with_its_reason():
+    error = robolang("identify", "cobra600", code=2).stderr
     assert "RBL703" in error
     assert "J3" in error
+
+
+def test_no_axis_of_a_scara_that_turns_feels_weight():
+    assert "RBL411" in robolang("weigh", FOLDER / "pick.rbl", code=3).stderr
+
+
+@pytest.mark.physics
+def test_a_comparison_has_the_errors_of_the_slide_under_keys_of_their_own():
+    found = robolang("compare", FOLDER / "pick.rbl", "--only", "scheduled,load-omitted", "--json").stdout
+    scheduled, omitted = json.loads(found)["variants"]
+    # without LOAD the weight of the hand is not held: the quill hangs lower, the other axes feel nothing of it
+    assert omitted["droop_mm"] > 5.0 * scheduled["droop_mm"]
+    assert omitted["joint_error_mm"] > 5.0 * scheduled["joint_error_mm"] > 0.0
+    assert omitted["joint_error_deg"] == pytest.approx(scheduled["joint_error_deg"], rel=0.2)
+    # the tool hangs where the quill does
+    hangs = omitted["moves"][-1]
+    assert hangs["left_mm"] == pytest.approx(abs(hangs["droop"][2]), rel=0.1)
+    assert omitted["joint_error_mm"] >= omitted["droop_mm"]
+    axes = scheduled["per_axis"]
+    assert axes["units"] == ["deg", "deg", "mm", "deg"]
+    assert axes["joint_error"][2] == scheduled["joint_error_mm"]
+    assert max(axes["joint_rms"][0], axes["joint_rms"][1], axes["joint_rms"][3]) == scheduled["joint_rms_deg"]
+    assert not [key for key in (*axes, *scheduled["moves"][0]) if "deg" in key]
+    text = robolang("compare", FOLDER / "pick.rbl", "--only", "scheduled").stdout
+    assert f"{scheduled['joint_error_mm']:.4f}" in text

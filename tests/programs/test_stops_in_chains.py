@@ -84,7 +84,9 @@ def test_what_was_not_reached_has_not_begun(project, whole, move, offset, capsys
     print_result(result.report)
     assert capsys.readouterr().out.count("not begun") == 4 - sum(begun)
     log = result.log
-    found = measures(log, session.controller.tool_poses(log["q_cmd"]), session.record.statements)
+    found = measures(
+        log, session.controller.tool_poses(log["q_cmd"]), session.record.statements, session.controller.spec
+    )
     assert [row["line"] for row in found["moves"]] == [FIRST + k for k in range(move + 1)]
 
 

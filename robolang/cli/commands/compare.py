@@ -102,11 +102,15 @@ _COLUMNS = (
     ("settle\n2 %\ns", "settling_s", "{:.3f}"),
     ("joint\nmax\ndeg", "joint_error_deg", "{:.4f}"),
     ("joint\nrms\ndeg", "joint_rms_deg", "{:.4f}"),
+    ("slide\nmax\nmm", "joint_error_mm", "{:.4f}"),
     ("tool\nmax\nmm", "tool_error_mm", "{:.3f}"),
     ("tool\nrms\nmm", "tool_rms_mm", "{:.3f}"),
     ("path\nmax\nmm", "path_deviation_mm", "{:.3f}"),
     ("droop\n\ndeg", "droop_deg", "{:.4f}"),
+    ("droop\n\nmm", "droop_mm", "{:.4f}"),
 )
+"""Those of an axis that slides are of an arm that has one; ``_LEFT_OUT`` there, since 80 columns hold no more."""
+_LEFT_OUT = ("joint_rms_deg", "tool_rms_mm")
 
 
 def _print(program: str, rows: list[dict[str, Any]]) -> None:
@@ -120,18 +124,25 @@ def _print(program: str, rows: list[dict[str, Any]]) -> None:
     console.print(safe(program), style="italic", soft_wrap=True)
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     table.add_column("variant", no_wrap=False)  # a title may take two lines; a number that is cut is another number
-    for heading, _, _ in _COLUMNS:
+    columns = _columns(any("joint_error_mm" in row for row in rows))
+    for heading, _, _ in columns:
         table.add_column(heading, justify="right", no_wrap=True)
     for row in rows:
         # equal rows would be taken for a result: there was no LOAD to make wrong, or no spring to lead
         title = row["title"] if row["changes"] else f"{row['title']}: changes nothing"
-        table.add_row(title, *("-" if row[key] is None else form.format(row[key]) for _, key, form in _COLUMNS))
+        table.add_row(title, *("-" if row[key] is None else form.format(row[key]) for _, key, form in columns))
     console.print(table)
     _print_axes(console, rows)
     # a program that supervision stops would otherwise seem to run well
     console.print("Supervision is off in every row; robolang run may stop where these runs went on.", soft_wrap=True)
     for line in (line for row in rows for line in _remarks(row)):
         console.print(safe(line), soft_wrap=True)
+
+
+def _columns(slides: bool) -> list[tuple[str, str, str]]:
+    """Return the columns of the table of an arm with an axis that slides, or of another."""
+    out = _LEFT_OUT if slides else ("joint_error_mm", "droop_mm")
+    return [column for column in _COLUMNS if column[1] not in out]
 
 
 def _remarks(row: dict[str, Any]) -> Iterator[str]:
@@ -150,11 +161,15 @@ def _print_axes(console: Any, rows: list[dict[str, Any]]) -> None:
     measured = [row for row in rows if row["per_axis"]]  # none without a MOVE that took time
     if not measured:
         return
-    count = len(measured[0]["per_axis"]["joint_error_deg"])
-    table = Table(title="Largest error of each axis, deg", box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
+    first = measured[0]["per_axis"]
+    # on an arm with an axis that slides each column has its unit
+    key = "joint_error" if "units" in first else "joint_error_deg"
+    title = f"Largest error of each axis{'' if 'units' in first else ', deg'}"
+    table = Table(title=title, box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     table.add_column("variant")
-    for axis in range(count):
-        table.add_column(f"J{axis + 1}", justify="right", no_wrap=True)
+    for axis in range(len(first[key])):
+        unit = f"\n{first['units'][axis]}" if "units" in first else ""
+        table.add_column(f"J{axis + 1}{unit}", justify="right", no_wrap=True)
     for row in measured:
-        table.add_row(row["title"], *(f"{value:.4f}" for value in row["per_axis"]["joint_error_deg"]))
+        table.add_row(row["title"], *(f"{value:.4f}" for value in row["per_axis"][key]))
     console.print(table)

@@ -5,6 +5,9 @@
     {"robot", "joints_deg", "payload_kg", "axes": [{"axis", "link_inertia", "rotor_inertia", "motor_inertia",
                                                     "compensation", "gravity"}, ...]}
     with --map  {"robot", "joints_deg", "payload_kg", "axis", "map", "smallest": {...}, "largest": {...}, "file"}
+
+Of an arm with an axis that slides ``joints`` stands in place of ``joints_deg``, with mm of that axis, and its row has
+``"kind": "prismatic"``: masses in kg and a force in N, but at the motor.
 """
 
 import json
@@ -21,6 +24,7 @@ from robolang.cli.usage import OptionValueError
 if TYPE_CHECKING:
     from robolang.experiments.inertia import InertiaMap
     from runtime.core.frames import Array
+    from runtime.robot.model.axis_kind import AxisKind
     from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
 
@@ -62,10 +66,8 @@ def inertia(options: _CompensationOptions, chart: _MapOptions, output: JsonOptio
         raise OptionValueError("--compensation", "cannot be used with --map: the map shows the model")
     with reported():
         from robolang.project.project import load_any_robot
-        from robolang.project.turning import only_turning
 
         spec = load_any_robot(options.robot)
-        only_turning(spec, "this table")
         say_warnings(spec.warnings)
         q, carried = values.posture(options.joints, spec), values.payload(options.payload, "--payload", spec)
         values.warn_outside(q, spec)
@@ -77,18 +79,16 @@ def inertia(options: _CompensationOptions, chart: _MapOptions, output: JsonOptio
         if output.as_json:
             echo(json.dumps(found))
         elif chart.over is None:
-            _print(found)
+            _print(found, spec)
         else:
-            _print_extremes(found)
+            _print_extremes(found, spec)
 
 
 def _head(spec: "RobotSpec", q: "Array", carried: "Payload") -> dict[str, Any]:
-    import numpy as np
-
     return {
         "robot": spec.name,
         # 12 digits: deg to rad and back changes the last of 17
-        "joints_deg": [float(f"{angle:.12g}") + 0.0 for angle in np.rad2deg(q)],
+        spec.joints_key: [float(f"{angle:.12g}") + 0.0 for angle in q / spec.units],
         "payload_kg": carried.mass,
     }
 
@@ -98,7 +98,9 @@ def _at_posture(spec: "RobotSpec", q: "Array", carried: "Payload", compensation:
     from runtime.dynamics.compensation import load_compensation
 
     extra = None if compensation is None else load_compensation(compensation, spec)
-    return {**_head(spec, q, carried), "axes": plain(at_posture(spec, q, carried, extra))}
+    rows = zip(spec.axes, plain(at_posture(spec, q, carried, extra)), strict=True)
+    axes = [{**row, **({"kind": axis.kind.name} if axis.kind.slides else {})} for axis, row in rows]
+    return {**_head(spec, q, carried), "axes": axes}
 
 
 def _over_plane(spec: "RobotSpec", q: "Array", carried: "Payload", chart: _MapOptions) -> dict[str, Any]:
@@ -163,33 +165,35 @@ def _axis(axis: int | None, spec: "RobotSpec") -> int:
 # --- output ----------------------------------------------------------------------------------------------------------
 
 
-def _print(found: dict[str, Any]) -> None:
+def _print(found: dict[str, Any], spec: "RobotSpec") -> None:
     from rich import box
     from rich.table import Table
 
     from robolang.cli.console import Console
     from robolang.core.diagnostics import safe
 
-    angles = ", ".join(f"{angle:g}" for angle in found["joints_deg"])
+    kinds = [axis.kind for axis in spec.axes]
+    inertias, forces = (", ".join(dict.fromkeys(getattr(kind, of) for kind in kinds)) for of in ("inertia", "force"))
     table = Table(
-        title=safe(f"{found['robot']} at ({angles}) deg{_with(found['payload_kg'])}"),
+        title=safe(f"{found['robot']} at {_posture(found[spec.joints_key], kinds)}{_with(found['payload_kg'])}"),
         box=box.SIMPLE_HEAD,
         padding=(0, 1, 0, 0),
         pad_edge=False,
     )
     for heading in (
         "axis",
-        "link D\nkg m2",
-        "rotor N^2 J\nkg m2",
+        f"link D\n{inertias}",
+        f"rotor N^2 J\n{inertias}",
         "at the motor\nkg cm2",
         "compensation\nkg cm2",
-        "gravity\nN m",
+        f"gravity\n{forces}",
     ):
         table.add_column(heading, justify="left" if heading == "axis" else "right", no_wrap=True)
-    for row in found["axes"]:
+    for row, kind in zip(found["axes"], kinds, strict=True):
         table.add_row(
             f"J{row['axis']}",
-            f"{row['link_inertia']:.4g}",
+            # the unit of a row where the heading has two
+            f"{row['link_inertia']:.4g}{f' {kind.inertia}' if ', ' in inertias else ''}",
             f"{row['rotor_inertia']:.4g}",
             f"{row['motor_inertia'] / KG_CM2:.4g}",
             f"{row['compensation'] / KG_CM2:.4g}",
@@ -202,10 +206,18 @@ def _print(found: dict[str, Any]) -> None:
     console.print(f"at the motor: D / N^2 + {beyond}; 1 kg cm2 = 1e-4 kg m2", style="italic")
 
 
-def _print_extremes(found: dict[str, Any]) -> None:
+def _posture(joints: list[float], kinds: "list[AxisKind]") -> str:
+    """Return joints in brackets, with one unit after them or, where there are two, with that of each."""
+    if len(set(kinds)) == 1:
+        return f"({', '.join(f'{at:g}' for at in joints)}) {kinds[0].unit}"
+    return f"({', '.join(f'{at:g} {kind.unit}' for at, kind in zip(joints, kinds, strict=True))})"
+
+
+def _print_extremes(found: dict[str, Any], spec: "RobotSpec") -> None:
     from robolang.core.diagnostics import safe
 
     first, second = found["map"]
+    one, other, mapped = (spec.axes[axis - 1].kind for axis in (first, second, found["axis"]))
     over = f"over J{first} and J{second}{_with(found['payload_kg'])}"
     echo(safe(f"{found['robot']}: inertia of J{found['axis']} at the motor {over}"))
     low, high = (found[name]["motor_inertia"] for name in ("smallest", "largest"))
@@ -213,10 +225,11 @@ def _print_extremes(found: dict[str, Any]) -> None:
         echo(f"  {low / KG_CM2:.4g} kg cm2 everywhere: these two joints do not change it")
     for name in ("smallest", "largest") if high - low > 1e-9 * high else ():
         at = found[name]
-        x, y = at["joints_deg"]
+        x, y = at["joints" if one.slides or other.slides else "joints_deg"]
+        where = f"J{first} {x:.1f}{'' if one is other else f' {one.unit}'}, J{second} {y:.1f} {other.unit}"
         echo(
-            f"  {name:<9} {at['motor_inertia'] / KG_CM2:.4g} kg cm2 (link D {at['link_inertia']:.4g} kg m2) "
-            f"at J{first} {x:.1f}, J{second} {y:.1f} deg"
+            f"  {name:<9} {at['motor_inertia'] / KG_CM2:.4g} kg cm2 (link D {at['link_inertia']:.4g} {mapped.inertia}) "
+            f"at {where}"
         )
     if found["file"] is not None:
         echo(safe(f"  drawn in {found['file']}"))
@@ -226,21 +239,30 @@ def _with(mass: float) -> str:
     return f" with {mass:g} kg" if mass else ""
 
 
+def _held(spec: "RobotSpec", joint: int, q: float) -> str:
+    kind = spec.axes[joint].kind
+    return f"J{joint + 1} {round(q / kind.size, 3) + 0.0:g}{f' {kind.unit}' if spec.slides.any() else ''}"
+
+
 def _draw(path: Path, spec: "RobotSpec", found: "InertiaMap", mass: float) -> None:
     from robolang.core.storage import write_atomic
     from robolang.execution.plot import Labels, as_map_svg
-    from runtime.core.units import DEG
 
-    first, second = (f"J{joint + 1}" for joint in found.joints)
+    (first, one), (second, other) = (
+        (f"J{joint + 1}", kind) for joint, kind in zip(found.joints, found.kinds, strict=True)
+    )
     title = f"{spec.name}{_with(mass)}: inertia of J{found.axis + 1} at its motor, D / N^2 + J"
     others = [joint for joint in range(found.axis + 1, spec.n) if joint not in found.joints]  # it depends on these
-    held = ", ".join(f"J{joint + 1} {round(found.q[joint] / DEG, 3) + 0.0:g}" for joint in others)
+    held = ", ".join(_held(spec, joint, float(found.q[joint])) for joint in others)
+    # one unit is said once
+    held += "" if spec.slides.any() or not held else " deg"
     svg = as_map_svg(
-        Labels(title=title, x=f"{first}, deg{f' (at {held} deg)' if held else ''}", y=f"{second}, deg"),
+        Labels(title=title, x=f"{first}, {one.unit}{f' (at {held})' if held else ''}", y=f"{second}, {other.unit}"),
         "kg cm2",
-        found.x / DEG,
-        found.y / DEG,
+        found.x / one.size,
+        found.y / other.size,
         found.motor / KG_CM2,
-        every=TICKS_DEG,
+        # 45 mm are no usual distance of ticks
+        every=None if one.slides or other.slides else TICKS_DEG,
     )
     write_atomic(path, lambda stream: stream.write(svg.encode("utf-8")))

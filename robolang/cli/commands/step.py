@@ -16,13 +16,14 @@ from runtime.core.rounding import beside
 if TYPE_CHECKING:
     from robolang.experiments.step import PlantName, StepRequest, StepResult
     from runtime.core.frames import Array
+    from runtime.robot.model.axis_kind import AxisKind
     from runtime.robot.model.payload import Payload
     from runtime.robot.model.spec import RobotSpec
 
 MOST_S = 60.0
 """Longest time after the step, s."""
 MOST_DEG = 360.0
-"""Largest step, deg: one turn."""
+"""Largest step, deg: one turn; of an axis that slides as many mm."""
 
 
 class _StepOptions(PostureOptions):
@@ -30,7 +31,9 @@ class _StepOptions(PostureOptions):
 
     PANEL: ClassVar[str] = "Step"
     axis: Annotated[int, Option("--axis", metavar="N", low=1, high=7, help="Axis that makes the step, from 1.")]
-    size: Annotated[float, Option("--size", metavar="DEG", help="Size of the step, deg; 0: only the droop.")] = 0.5
+    size: Annotated[float, Option("--size", metavar="DEG", help="Size of the step, deg or mm; 0: only the droop.")] = (
+        0.5
+    )
     load: Annotated[
         str | None,
         Option("--load", metavar="M,X,Y,Z", help="Payload that LOAD declares: kg, mm; default: the carried one."),
@@ -85,7 +88,7 @@ def step(options: _StepOptions, arm: _ArmOptions, controller: ControllerOptions,
         if output.as_json:
             echo(json.dumps(found))
         else:
-            _print(found)
+            _print(found, request.robot.axes[request.axis].kind)
         if output.plot is not None:
             _write_plot(output.plot, request, result)
     if not result.stable:
@@ -99,14 +102,16 @@ def _request(options: _StepOptions, arm: _ArmOptions, profile: str | None, setti
     from robolang.experiments.step import StepRequest
     from robolang.project.project import load_any_robot, load_settings
     from runtime.core.frames import pose
-    from runtime.core.units import DEG, MM
+    from runtime.core.units import MM
 
     spec = load_any_robot(options.robot)
     say_warnings(spec.warnings)
     tool_point = np.array(numbers(options.tool, option="--tool", names=("x", "y", "z"))) * MM
     in_force = load_settings(spec, pose(tool_point, np.eye(3)), profile, settings)
-    _check_numbers(options)
-    q, size = values.posture(options.joints, spec), options.size * DEG
+    # an axis that the robot has not is left to the experiment
+    kind = spec.axes[min(options.axis, spec.n) - 1].kind
+    _check_numbers(options, kind.unit)
+    q, size = values.posture(options.joints, spec), options.size * kind.size
     _check_range(q, options.axis - 1, size, spec)
     carried = _payload(options.payload, "--payload", spec)
     return StepRequest(
@@ -125,18 +130,18 @@ def _request(options: _StepOptions, arm: _ArmOptions, profile: str | None, setti
     )
 
 
-def _check_numbers(options: _StepOptions) -> None:
+def _check_numbers(options: _StepOptions, unit: str) -> None:
     """Refuse a size or a time that the step cannot have; written so that NaN is refused too."""
     size, seconds = options.size, options.seconds
     if not abs(size) <= MOST_DEG:
         shown = beside(size, -MOST_DEG, MOST_DEG)[0]
-        raise OptionValueError("--size", f"{shown} is not between {-MOST_DEG:g} and {MOST_DEG:g} deg")
+        raise OptionValueError("--size", f"{shown} is not between {-MOST_DEG:g} and {MOST_DEG:g} {unit}")
     if not seconds <= MOST_S:
         raise OptionValueError("--seconds", f"{beside(seconds, MOST_S)[0]} is not between 0.2 and {MOST_S:g} s")
 
 
 def _check_range(q: "Array", axis: int, size: float, spec: "RobotSpec") -> None:
-    """Refuse a posture q (n,) rad and a step of ``size`` rad that leave the range of a joint.
+    """Refuse a posture q (n,) rad and a step of ``size`` rad (m of a slide) that leave the range of a joint.
 
     An axis that the robot has not is left to the experiment.
     """
@@ -155,29 +160,33 @@ def _payload(text: str, option: str, spec: "RobotSpec") -> "Payload":
     return payload
 
 
-# z: the droop is the one figure with a sign, and -0.0000 would look like a direction
-_LINES = (
-    ("true inertia with rotor", "inertia_kg_m2", "{:.4g} kg m2"),
-    ("inertia in the gains", "gain_inertia_kg_m2", "{:.4g} kg m2"),
-    ("overshoot", "overshoot_pct", "{:.2f} %"),
-    ("settling to 2 %", "settling_s", "{:.4f} s"),
-    ("rise 10 to 90 %", "rise_s", "{:.4f} s"),
-    ("droop", "droop_deg", "{:z.4f} deg"),
-    ("peak torque", "peak_torque_nm", "{:.1f} N m"),
-)
+def _lines(kind: "AxisKind") -> tuple[tuple[str, str, str], ...]:
+    """Return label, key and form of each figure that is printed of an axis of a kind."""
+    mass = "mass" if kind.slides else "inertia"
+    unit = kind.inertia.replace(" ", "_")
+    return (
+        (f"true {mass} with rotor", f"inertia_{unit}", f"{{:.4g}} {kind.inertia}"),
+        (f"{mass} in the gains", f"gain_inertia_{unit}", f"{{:.4g}} {kind.inertia}"),
+        ("overshoot", "overshoot_pct", "{:.2f} %"),
+        ("settling to 2 %", "settling_s", "{:.4f} s"),
+        ("rise 10 to 90 %", "rise_s", "{:.4f} s"),
+        # z: the droop is the one figure with a sign, and -0.0000 would look like a direction
+        ("droop", f"droop_{kind.unit}", f"{{:z.4f}} {kind.unit}"),
+        (f"peak {kind.effort}", kind.force_key.replace("max", "peak"), f"{{:.1f}} {kind.force}"),
+    )
 
 
-def _print(found: dict[str, Any]) -> None:
+def _print(found: dict[str, Any], kind: "AxisKind") -> None:
     from robolang.core.diagnostics import safe
 
     drives = "ideal drives" if found["ideal_drives"] else "real drives"
     echo(
         safe(
-            f"{found['robot']}: step of {found['size_deg']:g} deg on J{found['axis']}, {found['servo']} gains, "
-            f"{found['plant']} arm, {drives}"
+            f"{found['robot']}: step of {found[f'size_{kind.unit}']:g} {kind.unit} on J{found['axis']}, "
+            f"{found['servo']} gains, {found['plant']} arm, {drives}"
         )
     )
-    for label, key, form in _LINES:
+    for label, key, form in _lines(kind):
         if found[key] is not None:
             echo(f"  {label:<24} {form.format(found[key])}")
     if not found["stable"]:
@@ -187,10 +196,11 @@ def _print(found: dict[str, Any]) -> None:
 def _write_plot(path: Path, request: "StepRequest", result: "StepResult") -> None:
     from robolang.core.storage import write_atomic
     from robolang.execution.plot import Curve, Labels, as_html, as_svg
-    from runtime.core.units import DEG
 
-    title = f"{request.robot.name}: step on J{request.axis + 1}, D' = {result.inertia:.3g} kg m2"
-    curve = Curve(name=f"{request.profile.servo.mode} gains", x=result.t, y=result.response / DEG)
-    svg = as_svg(Labels(title=title, x="time, s", y="angle, deg"), [curve], level=request.size / DEG)
+    kind = request.robot.axes[request.axis].kind
+    title = f"{request.robot.name}: step on J{request.axis + 1}, D' = {result.inertia:.3g} {kind.inertia}"
+    curve = Curve(name=f"{request.profile.servo.mode} gains", x=result.t, y=result.response / kind.size)
+    y = f"{'position' if kind.slides else 'angle'}, {kind.unit}"
+    svg = as_svg(Labels(title=title, x="time, s", y=y), [curve], level=request.size / kind.size)
     text = as_html(title, svg) if path.suffix == ".html" else svg
     write_atomic(path, lambda stream: stream.write(text.encode("utf-8")))

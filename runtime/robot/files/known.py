@@ -8,8 +8,9 @@ import math
 from collections.abc import Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
-from runtime.core.frames import frozen
+from runtime.core.frames import Array, frozen
 from runtime.core.tomlfile import FileFault
 from runtime.robot.files.corrections import TOKEN_MASS, flat, shifted, smallest_shift
 from runtime.robot.files.estimate import Known
@@ -30,15 +31,8 @@ def known_of(arm: ImportedArm) -> Known:
 
     ``FileFault`` RBL608 at an axis that slides and has no range: no rule gives one.
     """
-    # NaN, not 0: a value that is missing must not compare as small
-    efforts = [math.nan if axis.hinge.effort is None else axis.hinge.effort for axis in arm.axes]
     bodies: tuple[Body | None, ...] = tuple(_body(axis) for axis in arm.axes)
-    # a range that no sidecar may state is none
-    widest = np.array([axis.kind.widest for axis in arm.axes])
-    within = np.maximum(np.abs(arm.lower), np.abs(arm.upper)) <= widest
-    for index in np.flatnonzero(~within).tolist():
-        _check_travel(arm.axes[index], index)
-    hinges = [axis.hinge for axis in arm.axes]
+    efforts, within = _of_hinges(arm, "effort"), _within(arm)
     return Known(
         chain=Chain.of(arm.axes, arm.X_last_flange),
         bodies=(None,) * arm.n if _bodies_alike(arm) else bodies,
@@ -46,13 +40,27 @@ def known_of(arm: ImportedArm) -> Known:
         lower=np.where(within, arm.lower, math.nan),
         upper=np.where(within, arm.upper, math.nan),
         endless=[axis.hinge.endless for axis in arm.axes],
-        speed=np.array([math.nan if hinge.speed is None else hinge.speed for hinge in hinges]),
-        torque=np.full(arm.n, math.nan) if alike(efforts) else np.array(efforts),
-        armature=np.array([hinge.armature for hinge in hinges]),
-        damping=np.array([hinge.damping for hinge in hinges]),
-        friction=np.array([hinge.friction for hinge in hinges]),
+        speed=_of_hinges(arm, "speed"),
+        torque=np.full(arm.n, math.nan) if alike(efforts.tolist()) else efforts,
+        armature=_of_hinges(arm, "armature"),
+        damping=_of_hinges(arm, "damping"),
+        friction=_of_hinges(arm, "friction"),
         payload=math.nan,
     )
+
+
+def _of_hinges(arm: ImportedArm, what: str) -> Array:
+    """Return a value of every hinge (n,); NaN, not 0, where it is missing, which must not compare as small."""
+    return np.array([getattr(axis.hinge, what) for axis in arm.axes], dtype=np.float64)
+
+
+def _within(arm: ImportedArm) -> NDArray[np.bool_]:
+    """Return which axes (n,) have a range that a sidecar may state; another is none. ``FileFault`` RBL608."""
+    widest = np.array([axis.kind.widest for axis in arm.axes])
+    within = np.asarray(np.maximum(np.abs(arm.lower), np.abs(arm.upper)) <= widest)
+    for index in np.flatnonzero(~within).tolist():
+        _check_travel(arm.axes[index], index)
+    return within
 
 
 def _check_travel(axis: ImportedAxis, index: int) -> None:

@@ -169,6 +169,11 @@ class RobotSpec:
         """Whether each axis slides (n,)."""
         return np.array([axis.kind.slides for axis in self.axes])
 
+    @property
+    def joints_key(self) -> str:
+        """The key of joints in what is written for programs: with deg in its name where all axes turn."""
+        return "joints" if self.slides.any() else "joints_deg"
+
     def largest(self, off: Array) -> str:
         """Return the largest of distances (n,) of joints, rad where a mm counts as a deg, in the unit of its axis."""
         axis = int(np.argmax(off))
