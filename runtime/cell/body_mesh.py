@@ -13,7 +13,7 @@ from runtime.core.frames import Array, frozen
 from runtime.core.hull import hull_of
 from runtime.core.linear import matmul
 from runtime.core.mesh import Mesh
-from runtime.core.mesh_files import MeshError, read_mesh
+from runtime.core.mesh_files import read_mesh
 from runtime.core.solid import NoSolidError, Solid, solid_of
 from runtime.core.units import MM
 
@@ -52,9 +52,7 @@ class BodyMesh:
 
 def read_body_mesh(path: Path, name: str, scale: float) -> BodyMesh:
     """Return the mesh of a file; ``scale`` makes its numbers mm. ``MeshError``, ``NoSolidError``."""
-    read = read_mesh(path)
-    if len(read.faces) > MOST_TRIANGLES:
-        raise MeshError(f"has {len(read.faces)} triangles, more than {MOST_TRIANGLES}")
+    read = read_mesh(path, MOST_TRIANGLES)
     low, high = read.vertices.min(axis=0), read.vertices.max(axis=0)
     # about the middle first: a part that was drawn far from the origin keeps its digits
     vertices = (read.vertices - (low + high) / 2.0) * (scale * MM)
@@ -78,9 +76,8 @@ def _normals(hull: Mesh) -> tuple[tuple[float, float, float], ...]:
     a, b, c = np.moveaxis(hull.vertices[hull.faces], 1, 0)
     across = np.cross(b - a, c - a)
     lengths = np.sqrt(einsum("ij,ij->i", across, across))
-    big = lengths > 0.0
-    # as rounded: the triangles of one face differ in the last digits
-    units, which = np.unique(np.round(across[big] / lengths[big, None], 3), axis=0, return_inverse=True)
-    order = np.argsort(-np.bincount(which.reshape(-1), lengths[big]), kind="stable")[:MOST_NORMALS]
-    found = units[order] / np.sqrt(einsum("ij,ij->i", units[order], units[order]))[:, None]
-    return tuple((x, y, z) for x, y, z in found.tolist())
+    largest = np.argsort(-lengths, kind="stable")[: np.count_nonzero(lengths)]
+    units = across[largest] / lengths[largest, None]
+    # compared as rounded: the triangles of one face differ in the last digits, and the largest of them is exact
+    first = np.sort(np.unique(np.round(units, 3), axis=0, return_index=True)[1])[:MOST_NORMALS]
+    return tuple((x, y, z) for x, y, z in units[first].tolist())

@@ -5,7 +5,6 @@ from functools import lru_cache
 
 import numpy as np
 from numpy import einsum
-from numpy.typing import NDArray
 
 from runtime.cell.body_mesh import BodyMesh
 from runtime.core.frames import Array
@@ -52,10 +51,24 @@ class FlatFace:
         return bool(np.count_nonzero(right) % 2)
 
 
+@dataclass(frozen=True, slots=True, kw_only=True, eq=False)
+class FlatFaces:
+    """The faces of a mesh and their ``normals`` (k, 3)."""
+
+    faces: tuple[FlatFace, ...]
+    normals: Array
+
+    def towards(self, direction: Array, askew: float) -> list[FlatFace]:
+        """Return the faces that look against a direction (3,), by at most an angle, rad."""
+        looking = matmul(self.normals, direction) <= -np.cos(askew)
+        return [self.faces[k] for k in np.flatnonzero(looking).tolist()]
+
+
 @lru_cache(maxsize=256)
-def flat_faces(body: BodyMesh) -> tuple[FlatFace, ...]:
+def flat_faces(body: BodyMesh) -> FlatFaces:
     """Return the flat faces of a mesh that a cup may seal on, the largest first."""
-    return tuple(_Faces(body.mesh).found())
+    faces = tuple(_Faces(body.mesh).found())
+    return FlatFaces(faces=faces, normals=np.array([face.normal for face in faces]).reshape(-1, 3))
 
 
 class _Faces:
@@ -73,33 +86,38 @@ class _Faces:
         for triangle, edges in enumerate(self._edges):
             for edge in edges:
                 self._owners.setdefault(edge, []).append(triangle)
+        self._left = set(range(len(self._edges)))
 
     def found(self) -> list[FlatFace]:
         """Return the faces; each begins at the largest triangle that is left."""
-        left = np.ones(len(self._areas), dtype=np.bool_)
         faces = []
         for seed in np.argsort(-self._areas, kind="stable").tolist():
-            if left[seed] and self._areas[seed] > 0.0:
-                face = self._grown(seed, left)
-                left[face] = False
+            if seed in self._left and self._areas[seed] > 0.0:
+                face = self._grown(seed)
                 if self._areas[face].sum() >= SMALLEST:
                     faces.append(self._face(seed, face))
         return faces
 
-    def _grown(self, seed: int, left: NDArray[np.bool_]) -> list[int]:
-        normal, corners = self._normals[seed], self._mesh.vertices[self._mesh.faces]
-        offset = dot(normal, corners[seed, 0])
-        near = (np.abs(matmul(corners, normal) - offset) <= FLAT).all(axis=1)
-        # one without an area has no normal of its own
-        turned = (matmul(self._normals, normal) >= np.cos(TURNED)) | (self._areas <= 0.0)
-        may = near & turned & left
-        face, todo = {seed}, [seed]
+    def _grown(self, seed: int) -> list[int]:
+        """Return the triangles in the plane of one that are left, from it on over their edges, and take them."""
+        normal = self._normals[seed]
+        offset = dot(normal, self._mesh.vertices[self._mesh.faces[seed, 0]])
+        face, todo = [seed], [seed]
+        self._left.discard(seed)
         while todo:
             for one, other in self._edges[todo.pop()]:
-                new = [each for each in self._owners.get((other, one), ()) if may[each] and each not in face]
-                face.update(new)
-                todo += new
+                for beside in self._owners.get((other, one), ()):
+                    if beside in self._left and self._belongs(beside, normal, offset):
+                        self._left.discard(beside)
+                        face.append(beside)
+                        todo.append(beside)
         return sorted(face)
+
+    def _belongs(self, triangle: int, normal: Array, offset: float) -> bool:
+        corners = self._mesh.vertices[self._mesh.faces[triangle]]
+        near = bool((np.abs(matmul(corners, normal) - offset) <= FLAT).all())
+        # one without an area has no normal of its own
+        return near and (self._areas[triangle] <= 0.0 or dot(self._normals[triangle], normal) >= np.cos(TURNED))
 
     def _face(self, seed: int, face: list[int]) -> FlatFace:
         normal = self._normals[seed]

@@ -10,7 +10,7 @@ import numpy as np
 from runtime.cell.cell import HandSpec, PartSpec
 from runtime.cell.flat_faces import flat_faces
 from runtime.core.frames import Array
-from runtime.core.linear import dot, matmul
+from runtime.core.linear import matmul
 from runtime.core.units import DEG
 
 GAP = 1e-3
@@ -33,7 +33,7 @@ def seals(hand: HandSpec, X_world_tool: Array, part: PartSpec, X_world_part: Arr
     rim = centre[:, None] + matmul(R, _RIM * hand.pad[0])
     if part.mesh is None:
         return _on_solid(part, R[:, 2], rim)
-    faces = (face for face in flat_faces(part.mesh) if -dot(face.normal, R[:, 2]) >= np.cos(ASKEW))
+    faces = flat_faces(part.mesh).towards(R[:, 2], ASKEW)
     return any(_on(matmul(face.normal, rim) - face.offset) and face.holds(centre, hand.pad[0]) for face in faces)
 
 

@@ -29,8 +29,8 @@ class MeshError(Exception):
     """A file that gives no mesh; the text says why, as a sentence about the file."""
 
 
-def read_mesh(path: Path) -> Mesh:
-    """Return the mesh of a file, in the file's unit; ``MeshError``."""
+def read_mesh(path: Path, most: int | None = None) -> Mesh:
+    """Return the mesh of a file, in the file's unit; ``MeshError``, also for more than ``most`` triangles."""
     if path.suffix.lower() not in MESH_ENDINGS:
         raise MeshError(f"is neither {' nor '.join(MESH_ENDINGS)}")
     try:
@@ -42,6 +42,9 @@ def read_mesh(path: Path) -> Mesh:
     corners, faces = _obj(raw) if path.suffix.lower() == ".obj" else _stl(raw)
     if not len(faces):
         raise MeshError("has no triangles")
+    # before they are sorted, which takes longest
+    if most is not None and len(faces) > most:
+        raise MeshError(f"has {len(faces)} triangles, more than {most}")
     if not (np.abs(corners) <= FARTHEST).all():  # NaN too
         raise MeshError(f"has a number that is not within {FARTHEST:g}")
     return _joined(corners, faces)

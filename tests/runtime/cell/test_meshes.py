@@ -71,7 +71,7 @@ def test_a_file_that_several_bodies_name_is_read_once(tmp_path):
 
 def test_a_file_that_is_refused_is_read_once_and_refused_wherever_it_is_named(tmp_path, monkeypatch):
     read = []
-    monkeypatch.setattr(body_mesh, "read_mesh", lambda path: read.append(path) or read_mesh(path))
+    monkeypatch.setattr(body_mesh, "read_mesh", lambda *given: read.append(given) or read_mesh(*given))
     more = '\n[[obstacles]]\nname = "o"\nshape = "mesh"\nfile = "part.stl"\npose_mm_deg = [0, 900, 100, 0, 0, 0]\n'
     path = cell(tmp_path, OPEN, more=more)
     with pytest.raises(FileFault) as caught:
