@@ -14,8 +14,10 @@ from runtime.core.units import DEG
 
 FLAT = 1e-4
 """How far the corners of a face may be off its plane, m: a lip bridges ten times as much."""
-TURNED = 2.0 * DEG
-"""Largest angle between two triangles of one face, rad."""
+AWAY = 120.0 * DEG
+"""Angle from which on a triangle in the plane of a face is one of the other side of a thin sheet, rad."""
+SHORTEST = 1e-9
+"""Length of an edge that counts, m."""
 SMALLEST = 0.7e-6
 """Area below which no cup of 1 mm fits on a face, m2."""
 ROUNDING = 1e-6
@@ -116,8 +118,8 @@ class _Faces:
     def _belongs(self, triangle: int, normal: Array, offset: float) -> bool:
         corners = self._mesh.vertices[self._mesh.faces[triangle]]
         near = bool((np.abs(matmul(corners, normal) - offset) <= FLAT).all())
-        # one without an area has no normal of its own
-        return near and (self._areas[triangle] <= 0.0 or dot(self._normals[triangle], normal) >= np.cos(TURNED))
+        # whatever else its direction: the walls of a step that is as low are bridged too
+        return near and dot(self._normals[triangle], normal) >= np.cos(AWAY)
 
     def _face(self, seed: int, face: list[int]) -> FlatFace:
         normal = self._normals[seed]
@@ -130,4 +132,7 @@ class _Faces:
         outline = sorted(edge for edge in inner if edge[::-1] not in inner)
         corners = self._mesh.vertices[np.array(outline)]
         offset = dot(normal, self._mesh.vertices[self._mesh.faces[seed, 0]])
-        return FlatFace(normal=normal, offset=offset, axes=axes, outline=matmul(corners, axes.T))
+        ends = matmul(corners, axes.T)
+        # the edges at the ends of a low step stand upright: seen from above they are points
+        lengths = np.abs(ends[:, 1] - ends[:, 0]).max(axis=1)
+        return FlatFace(normal=normal, offset=offset, axes=axes, outline=ends[lengths > SHORTEST])

@@ -61,6 +61,7 @@ def test_a_mesh_in_si_about_the_middle_of_its_box(tmp_path):
 def test_the_scale_makes_the_numbers_of_the_file_mm(tmp_path, scale, size):
     spec = build(read_cell_file(cell(tmp_path, keys=f'file = "part.stl"\nscale = {scale}')))
     assert spec.parts[0].size[0] == pytest.approx(size)
+    assert np.ptp(spec.parts[0].mesh.mesh.vertices[:, 0]) == pytest.approx(size)
 
 
 def test_a_file_that_several_bodies_name_is_read_once(tmp_path):

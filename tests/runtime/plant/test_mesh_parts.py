@@ -16,7 +16,7 @@ from runtime.plant.inertia import part_inertia
 from runtime.plant.mjcf import build_mjcf
 from runtime.plant.rigid_plant import RigidPlant
 from runtime.robot.model.arm_model import ArmModel
-from tests.runtime.meshes import angle_bracket, binary_stl, box_mesh, frame, prism
+from tests.runtime.meshes import angle_bracket, binary_stl, box_mesh, extruded, frame, prism
 from tests.runtime.plant.test_plant_grasp import CELL, Rig, slip
 from tests.runtime.plant.test_suction import cell as cup_cell
 from tests.runtime.plant.test_suction import over
@@ -136,6 +136,25 @@ def test_a_round_side_is_no_flat_face(tmp_path):
     noisy = box_mesh((60.0, 40.0, 40.0))
     corners = noisy.vertices + np.random.default_rng(3).uniform(-0.01, 0.01, (8, 3))
     assert seals(hand, over(0, 0, 0), part_of(tmp_path, Mesh(vertices=corners, faces=noisy.faces)), np.eye(4))
+
+
+@pytest.mark.parametrize(("step", "expected"), [(0.05, True), (0.15, False)])
+def test_a_step_under_the_rim_is_bridged_or_not(tmp_path, step, expected):
+    """Its top is ``step`` mm lower for y under 0."""
+    corners = [(-30, 0), (30, 0), (30, 40), (0, 40), (0, 40 - step), (-30, 40 - step)]
+    solid = extruded(corners, [(0, 1, 4), (1, 2, 4), (2, 3, 4), (0, 4, 5)], 40.0)
+    mesh = Mesh(vertices=solid.vertices[:, [2, 0, 1]], faces=solid.faces)  # the profile from x y to y z
+    assert seals(cup_cell().hand, over(0, 0, 0), part_of(tmp_path, mesh), np.eye(4)) is expected
+    assert seals(cup_cell().hand, over(0, 15, 0), part_of(tmp_path, mesh), np.eye(4))
+
+
+@pytest.mark.parametrize(("slope", "expected"), [(0.05 * DEG, True), (0.75 * DEG, False)])
+def test_a_ridge_under_the_rim_is_bridged_or_not(tmp_path, slope, expected):
+    down = 30.0 * np.tan(slope)
+    corners = [(-30, 0), (30, 0), (30, 40 - down), (0, 40), (-30, 40 - down)]
+    solid = extruded(corners, [(0, 1, 3), (1, 2, 3), (0, 3, 4)], 40.0)
+    mesh = Mesh(vertices=solid.vertices[:, [2, 0, 1]], faces=solid.faces)
+    assert seals(cup_cell().hand, over(0, 0, 0), part_of(tmp_path, mesh), np.eye(4)) is expected
 
 
 def test_a_cup_holds_a_large_l_at_its_corner(tmp_path):
