@@ -71,6 +71,10 @@ class Analysis(Record):
     def diagnostics(self) -> tuple[Diagnostic, ...]:
         """Everything that is wrong, by place: errors of the text, then of its meaning in the cell."""
         found = self.parsed.diagnostics
+        if found:
+            from robolang.analysis.sub_calls import with_calls  # most programs have no error of text
+
+            found = with_calls(found, self.program)
         # the tree is empty then, and would be called a program without statements (RBL201)
         if self.is_unread:
             return found

@@ -77,7 +77,7 @@ register(
         code="RBL112",
         name="unknown-instruction",
         meaning="The line does not start with an instruction of the language.",
-        remedy="Start the line with an instruction such as MOVE, LOAD, HAND or IF, or with name = value.",
+        remedy="Start the line with an instruction such as MOVE, LOAD, HAND, IF or CALL name, or with name = value.",
     ),
     Code(
         code="RBL113",

@@ -12,9 +12,9 @@ from robolang.syntax.line_reader import Stopped, line_reader
 from robolang.syntax.unparse import describe
 from runtime.core.record import Record
 
-_MOST = 160
+MOST = 160
 """Characters of a line that is still compared with the shapes: what is longer is no statement by hand."""
-_BEFORE = re.compile(r"[ \t]*(?:\*\w+(?=[ \t]+\S)|:)?")
+BEFORE = re.compile(r"[ \t]*(?:\*\w+(?=[ \t]+\S)|:)?")
 """What stands before a line: a label of this language, or the colon after the number of a line of TP."""
 _END = re.compile(r"[ \t]*;?[ \t]*\Z")
 
@@ -36,10 +36,10 @@ class Proposal(Record):
 def proposal(code: str) -> Proposal | None:
     """Return what to write for a line of another language, without its line number; None for a line that is none."""
     # a hidden character is the error, wherever else the line comes from
-    if len(code) > _MOST or not code.replace("\t", " ").isprintable():
+    if len(code) > MOST or not code.replace("\t", " ").isprintable():
         return None
     # a label is of this language, and a line of another one may have been typed after it
-    before = _BEFORE.match(code)
+    before = BEFORE.match(code)
     # JMP LBL[1]; of TP and RAPID: no sign ends a line here
     text = _END.sub("", code[before.end() :] if before else code, count=1)
     first = FIRST.match(text)
@@ -50,7 +50,7 @@ def proposal(code: str) -> Proposal | None:
         if found is None:
             continue
         words = {**found.groupdict(), "word": first[1]}
-        shown = tuple(map(_canonical, filled(shape.write, words).splitlines()))
+        shown = tuple(map(canonical, filled(shape.write, words).splitlines()))
         if all(shown):
             return Proposal(shape=shape, statements=shown, note=_noted(shape, words))
     return None
@@ -68,7 +68,7 @@ def advice(code: str) -> str:
     return found.advice if found else ""
 
 
-def _canonical(statement: str) -> str:
+def canonical(statement: str) -> str:
     """Return a statement as this language prints it; ``""`` for what is none."""
     reader = line_reader()
     read = reader.read(statement, 0) if reader else None

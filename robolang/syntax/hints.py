@@ -218,6 +218,16 @@ def _other_sign(found: Unexpected) -> str | None:
     return other_languages.sign(found.rest) if fits else None
 
 
+def _slashes(found: Unexpected) -> str | None:
+    """Return what // or /* after a statement is, or // between two numbers."""
+    # of x = 5 // 2 the first sign divides, and the second cannot stand after it
+    text = f"{found.head[-1:]}{found.rest}" if found.head.endswith("/") else found.rest
+    if found.kind not in ("SLASH", "STAR") or not text.startswith(("//", "/*")):
+        return None
+    is_after_number = _NUMBER.search(found.head.rstrip("/ \t")) and re.match(r"/[ \t]*[\d(]", found.rest)
+    return "INT(a / b) is the whole part of a quotient" if is_after_number else other_languages.sign(text)
+
+
 def _value(found: Unexpected) -> str | None:
     return (other_languages.value(found.word) or None) if found.takes_value else None
 
@@ -286,6 +296,7 @@ _OTHER_LANGUAGES: tuple[_Question, ...] = (
     _equals,
     _assigns,
     _semicolon,
+    _slashes,
     _other_sign,
     _value,
     _first_word,

@@ -39,8 +39,22 @@ _FOLLOWING = {
     "LOAD": "LOAD (x, y, z), mass declares the payload",
     "APO": "ZONE mm blends a move into the next one",
     "POS_ACT": "HERE is where the tool is",
+    "AXIS_ACT": "HERE is where the tool is; a point that is taught as joint angles keeps those",
+    "VEL_AXIS": "SPEEDJ % sets the speed of joint moves",
+    "ACC_AXIS": "ACCEL % sets the acceleration",
+    "SPEED": "SPEED mm/s sets the speed of straight moves, SPEEDJ % that of joint moves",
+    "MOTYPE": "the statement says it: MOVE moves straight, MOVEJ all joints together, MOVEC on an arc",
+    "TERMTYPE": "FINE or ZONE mm is an option of a move; without ZONE it stops at its end",
+    "ADVANCE": "remove it: computing runs ahead of motion here, and what reads or acts waits for it",
+    "ORI_TYPE": "remove it: WRIST sets what the wrist may do in a straight move",
+    "WAITTMOUT": "TIMEOUT s is an option of WAIT: WAIT IN(1) = 1, TIMEOUT 30",
+    "TIMER": "TIMER are the seconds since the program began: t0 = TIMER, then TIMER - t0",
+    "FLAG": "a flag is a name: x = 1",
+    "UTOOL": "TOOL name selects a tool of the cell",
+    "UFRAME": "FRAME name selects a frame of the cell, FRAME WORLD the world",
 }
-"""System variables of KRL, which begin with $."""
+"""System variables of KRL and KAREL, which begin with $."""
+_NO_VARIABLE = "there are no system variables of KRL or KAREL here; of the name of a text $ is the end, as in s$"
 _ENDS = ("WEND", "NEXT", "ENDSELECT", "ENDSUB")
 
 
@@ -113,7 +127,7 @@ def sign(text: str) -> str:
     if text[:1] == "$":
         word = re.match(r"\w*", text[1:])
         name = word[0].upper() if word else ""
-        return _FOLLOWING.get(name) or "write $ at the end of the name of a text, as in s$"
+        return _FOLLOWING.get(name) or _NO_VARIABLE
     return next((hint for begin, hint in _SIGNS if text.startswith(begin)), "")
 
 

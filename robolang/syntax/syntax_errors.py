@@ -9,7 +9,7 @@ import re
 
 from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
-from robolang.syntax import foreign_lines, other_languages
+from robolang.syntax import foreign_calls, foreign_lines, other_languages
 from robolang.syntax.hints import ASSIGNMENT, ASSIGNS, hint_of, unit_hint
 from robolang.syntax.keywords import COMPONENTS6, KEYWORDS, code_point, instruction_hint, look_alike
 from robolang.syntax.unexpected import END, Unexpected, expected, last_word, quote
@@ -80,9 +80,11 @@ def _component(found: Unexpected) -> Diagnostic | None:
 def _call(found: Unexpected) -> Diagnostic | None:
     """Return RBL112 for a line as ``sleep(0.5)`` of other languages: up to its end it could be one of this language."""
     call = re.match(r"[A-Za-z]\w*(?=[ \t]*\()", found.before)
-    if call is None or ASSIGNMENT.match(found.line) or not other_languages.instruction(call[0]):
-        return None
-    return _unknown_word(found, call[0], found.span.start - len(found.before))
+    if call and not ASSIGNMENT.match(found.line) and other_languages.instruction(call[0]):
+        return _unknown_word(found, call[0], found.span.start - len(found.before))
+    # pick(1, 2) of a subroutine: its name is the mistake, not the sign at which an element of an array ends
+    sub = foreign_calls.unknown(found.line) if "(" in found.before else None
+    return _unknown_word(found, sub.name, found.span.start - len(found.before) + sub.start) if sub else None
 
 
 def _unknown(found: Unexpected) -> Diagnostic | None:
@@ -96,7 +98,8 @@ def _unknown(found: Unexpected) -> Diagnostic | None:
 
 def _unknown_word(found: Unexpected, word: str, start: int) -> Diagnostic:
     message = f"unknown instruction '{quote(word)}'"
-    hint = foreign_lines.advice(found.line) or instruction_hint(word)
+    sub = foreign_calls.unknown(found.line)
+    hint = foreign_lines.advice(found.line) or (sub.advice if sub else instruction_hint(word))
     return Diagnostic(code="RBL112", message=message, span=Span(start, start + len(word)), hint=hint)
 
 

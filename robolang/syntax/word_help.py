@@ -5,6 +5,7 @@ import re
 from robolang.syntax.completion import Completion, completions
 from robolang.syntax.declaration import form
 from robolang.syntax.foreign.entry import MAKERS, Entry, listed
+from robolang.syntax.foreign.shapes import FIRST
 from robolang.syntax.foreign.words import meanings
 from robolang.syntax.foreign_lines import proposal
 from robolang.syntax.other_languages import sign
@@ -17,7 +18,7 @@ def explained(text: str) -> str:
     word = text.strip()
     # a word first: T1 or a lone sign may have the shape of a line too
     of_word = "\n\n".join(filter(None, (of_function(word), of_statement(word), of_other_languages(word))))
-    return of_word or _of_inner_word(word) or _of_line(word) or _of_sign(word)
+    return of_word or _of_inner_word(word) or _of_line(word) or _of_sign(word) or _of_first_word(word)
 
 
 def of_function(word: str) -> str:
@@ -68,6 +69,18 @@ def _of_sign(text: str) -> str:
     """Return what stands for a sign of other languages, or ``""``; of a text, only where it is nothing but a sign."""
     hint = sign(text) if re.fullmatch(r"[^\w\s$]{1,2}", text) else ""
     return f"{text}\n  {hint}" if hint else ""
+
+
+def _of_first_word(text: str) -> str:
+    """Return what the word that a line begins with means, as a check says for a line that it knows no more of."""
+    first = FIRST.match(text)
+    # joint-limits is the misspelt name of a code
+    if first is None or first.end() == len(text) or re.fullmatch(r"[\w-]+", text):
+        return ""
+    # $IN[1]: a system variable of KRL has its name after the sign
+    if first[1].startswith("$") and first[1] != "$":
+        return f"{text}\n  {sign(text)}"
+    return "\n\n".join(filter(None, (of_function(first[1]), of_statement(first[1]), of_other_languages(first[1]))))
 
 
 def _of_line(text: str) -> str:

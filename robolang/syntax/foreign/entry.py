@@ -1,5 +1,6 @@
 """One word of other languages: who has it, what it means there, and what to write here."""
 
+import re
 from typing import NamedTuple
 
 KRL = "KRL"
@@ -80,6 +81,9 @@ class Entry(NamedTuple):
     def advice(self) -> str:
         """What to write here."""
         statements = " and ".join(self.write.splitlines())
+        # a number of an entry is one of many: the line that has the word has its own
+        if re.search(r"\d", statements):
+            statements = f"for example {statements}"
         if self.missing:
             write = f"there is none here; write {statements}" if statements else "there is none here"
         else:

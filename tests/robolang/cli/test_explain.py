@@ -43,7 +43,7 @@ def test_an_unknown_code_is_answered_with_the_nearest(word, near):
     assert re.findall(r"[\w-]+", words)[-1] == near
 
 
-@pytest.mark.parametrize("word", ["", "zzzzzz", "RBL", "٤١٢"])
+@pytest.mark.parametrize("word", ["", "zzzzzz", "zzzzzz P1", "$", "RBL", "٤١٢"])
 def test_a_word_like_no_code_is_refused(word):
     said = robolang("explain", word, code=2).stderr
     assert "RBL703" in said
@@ -89,6 +89,10 @@ def test_a_whole_code_that_does_not_exist_has_no_nearest():
         ("==", ("==", "IF x = 1 THEN")),
         ("MoveL p10, v1000, z50, tool0;", ("RAPID", "MOVE p10, SPEED 1000, ZONE 50")),
         (" DO[1]=ON ", ("TP", "OUT(1) = 1")),
+        ("$IN[1]", ("$IN[1]", "IN(n)")),
+        ("$VEL.CP", ("SPEED mm/s",)),
+        ("MoveL p10\\Bad:=10, z10;", ("RAPID", "MOVE P1")),
+        ("MOVE P1, SPEED 5", ("MOVE point", "V+")),
     ],
 )
 def test_a_word_or_a_line_is_explained(word, parts):
