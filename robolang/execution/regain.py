@@ -26,11 +26,12 @@ AT_REST = 1e-9
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Displaced:
     """How far the arm is from where its path was left: of the tool point mm and deg, of the joints the largest deg,
-    a mm of one that slides counted as a deg."""
+    a mm of one that slides counted as a deg; ``unit`` is that of the joint."""
 
     distance_mm: float = 0.0
     angle_deg: float = 0.0
     joint_deg: float = 0.0
+    unit: str = "deg"
 
     @property
     def is_away(self) -> bool:
@@ -38,7 +39,7 @@ class Displaced:
         return not self.joint_deg * DEG <= AT_REST
 
     def __str__(self) -> str:
-        return f"{self.distance_mm:.1f} mm, {self.angle_deg:.1f} deg and {self.joint_deg:.1f} deg in a joint"
+        return f"{self.distance_mm:.1f} mm, {self.angle_deg:.1f} deg and {self.joint_deg:.1f} {self.unit} in a joint"
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -55,10 +56,13 @@ DEFAULT_LIMITS = RegainLimits()
 def displacement(world: RobotWorld, q_left: Array, q: Array) -> Displaced:
     """Return how far joint angles q (n,) rad are from q_left (n,)."""
     X_left, X = world.tool_pose(q_left), world.tool_pose(q)
+    robot = world.around.cell.robot
+    off = np.abs(q - q_left) / robot.units
     return Displaced(
         distance_mm=float(np.linalg.norm(X[:3, 3] - X_left[:3, 3])) / MM,
         angle_deg=rotation_angle(X_left[:3, :3], X[:3, :3]) / DEG,
-        joint_deg=float((np.abs(q - q_left) / world.around.cell.robot.units).max()),
+        joint_deg=float(off.max()),
+        unit=robot.axes[int(np.argmax(off))].kind.unit,
     )
 
 
@@ -68,7 +72,7 @@ def refuse_beyond(limits: RegainLimits, far: Displaced, where: str) -> None:
         raise Fault(
             "RBL541",
             f"the arm is {far} away from where {where}, more than {limits.distance_mm:g} mm or "
-            f"{limits.joint_deg:g} deg in a joint",
+            f"{limits.joint_deg:g} {far.unit} in a joint",
         )
 
 

@@ -16,6 +16,7 @@
     end_mm = 0.5                         # how far from it the tool may end, default 1
     end_deg = 0.5                        # how far the tool may be turned from it, default 1
     golden_deg = 0.01                    # most difference of a joint from NAME.golden.npz, cycle by cycle
+    golden_mm = 0.01                     # that of a joint that slides; default: as many mm as golden_deg has deg
     [expect.parts]
     part_1 = [400, 150, 640]             # where a part lies in the end
     part_mm = 1.0                        # how far from there, default 1
@@ -31,6 +32,7 @@ import robolang.core.codes  # noqa: F401 - all codes must be registered
 from runtime.core.faults import all_codes
 from runtime.core.toml_places import locate
 from runtime.core.tomlfile import FileFault, FilePlace, Source, Table, load_table, read_source
+from runtime.robot.model.axis_kind import AxisKind
 
 SCHEMA = 1
 ENDING = ".test.toml"
@@ -53,6 +55,7 @@ class Expectation:
     end_mm: float = 1.0
     end_deg: float = 1.0
     golden_deg: float | None = None
+    golden_mm: float | None = None
     parts: dict[str, tuple[float, ...]] = field(default_factory=dict)
     part_mm: float = 1.0
 
@@ -61,6 +64,17 @@ class Expectation:
         """The golden log beside the test file."""
         path = Path(self.source.path)
         return path.with_name(path.name.removesuffix(ENDING) + ".golden.npz")
+
+    @property
+    def golden_key(self) -> str | None:
+        """The key that asks for the comparison with the golden log, None: nothing does."""
+        return next((key for key in ("golden_deg", "golden_mm") if getattr(self, key) is not None), None)
+
+    def golden_most(self, kind: AxisKind) -> float:
+        """Return the largest difference of an axis of a kind from the golden log, in its unit."""
+        # bounds of an arm are set once: where one unit is left out, its number is that of the other
+        given = (self.golden_mm, self.golden_deg) if kind.slides else (self.golden_deg, self.golden_mm)
+        return next((most for most in given if most is not None), 0.0)
 
     def place(self, *keys: str) -> tuple[int, int]:
         """Return line and column of a key of ``[expect]``, or of the table where the key is left out."""
@@ -98,6 +112,7 @@ def read_expectation(source: Source) -> Expectation:
         end_mm=expect.number("end_mm", 1.0, positive=True),
         end_deg=expect.number("end_deg", 1.0, positive=True),
         golden_deg=_most(expect, "golden_deg"),
+        golden_mm=_most(expect, "golden_mm"),
         part_mm=parts.number("part_mm", 1.0, positive=True),
         parts={
             name: parts.attempt(lambda name=name: _end_of_part(parts, name)) or ()  # type: ignore[misc]

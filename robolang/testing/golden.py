@@ -1,9 +1,9 @@
 """The golden log of a program: ``NAME.golden.npz``, joint angles and running line of every interpolation cycle.
 
-Two arrays, as numpy writes them: ``q`` (cycles, axes) of float32, rad, and ``line`` (cycles,) of whole numbers. The
-file is not trusted: it must be a regular one, its directory must be that of two arrays, the header of each is matched
-before anything is unpacked, and no more rows are unpacked than the run has, so that memory is bounded by the run.
-numpy's own reader allocates what a header asks for. Written and read by ``robolang test``.
+Two arrays, as numpy writes them: ``q`` (cycles, axes) of float32, rad, m of an axis that slides, and ``line`` (cycles,)
+of whole numbers. The file is not trusted: it must be a regular one, its directory must be that of two arrays, the
+header of each is matched before anything is unpacked, and no more rows are unpacked than the run has, so that memory
+is bounded by the run. numpy's own reader allocates what a header asks for. Written and read by ``robolang test``.
 """
 
 import os
@@ -11,7 +11,7 @@ import re
 import struct
 import zipfile
 import zlib
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
@@ -25,8 +25,10 @@ from runtime.core.bounded_files import RefusedError, regular_file
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.rounding import beside
-from runtime.core.units import DEG
+from runtime.robot.model.axis_kind import AxisKind
 
+Bound = tuple[AxisKind, float]
+"""What an axis is, and the largest difference in its unit, deg or mm."""
 _REMEDY = "Write it with robolang test --update."
 _ANGLES = {"<f4": np.float32, "<f8": np.float64}
 _LINES = {"<i4": np.int32, "<i8": np.int64}
@@ -52,35 +54,52 @@ _DAMAGE = (
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class GoldenLog:
-    """A golden log: ``cycles`` of the file, and as many of them as were read: ``q`` (n, axes) rad, ``line`` (n,)."""
+    """A golden log: ``cycles`` of the file, and as many as were read: ``q`` (n, axes) rad or m, ``line`` (n,)."""
 
     cycles: int
     q: Array
     line: Array
 
-    def difference(self, q: Array, line: Array, most_deg: float) -> tuple[int | None, str]:
+    def difference(self, q: Array, line: Array, bounds: Sequence[Bound]) -> tuple[int | None, str]:
         """Return the first cycle at which a run differs and how; ``None`` and the largest difference when none does.
 
-        ``q`` (cycles, axes) rad and ``line`` (cycles,) are those of the run; NaN differs from everything.
+        ``q`` (cycles, axes) rad or m and ``line`` (cycles,) are those of the run; NaN differs from everything.
+        ``bounds`` (axes,) are the largest differences of each axis.
         """
         count = min(len(q), self.cycles)
         # float32 less float32 would round the difference
-        off = np.abs(q[:count].astype(np.float64) - self.q[:count]).max(axis=1, initial=0.0) / DEG
-        near = off <= most_deg
+        off = np.abs(q[:count].astype(np.float64) - self.q[:count]) / np.array([kind.size for kind, _ in bounds])
+        most = np.array([at_most for _, at_most in bounds])
+        near = (off <= most).all(axis=1)
         differs = np.flatnonzero(~(near & (line[:count] == self.line[:count])))
         if len(differs):
             at = int(differs[0])
             if near[at]:
                 return at, f"line {int(line[at])} runs, and line {int(self.line[at])} in the golden log"
-            differs_by, most = beside(float(off[at]), most_deg, form=".3g")
-            return at, f"{differs_by} deg off, at most {most} deg"
+            return at, _worst(off[at], bounds)
         if len(q) != self.cycles:
             return count, f"{len(q)} cycles, the golden log has {self.cycles}"
-        return None, f"{count} cycles, at most {float(off.max(initial=0.0)):.2g} deg off"
+        return None, f"{count} cycles, at most {_largest(off, bounds)} off"
+
+
+def _worst(off: Array, bounds: Sequence[Bound]) -> str:
+    """Return by how much the axis differs that is furthest beyond its bound; ``off`` (axes,) in their units."""
+    # NaN first, as argmax has it
+    axis = int(np.argmax(off - np.array([most for _, most in bounds])))
+    kind, at_most = bounds[axis]
+    differs_by, most = beside(float(off[axis]), at_most, form=".3g")
+    return f"{differs_by} {kind.unit} off, at most {most} {kind.unit}"
+
+
+def _largest(off: Array, bounds: Sequence[Bound]) -> str:
+    """Return the largest of differences (cycles, axes), of axes that turn and of those that slide."""
+    units = [kind.unit for kind, _ in bounds]
+    found = {unit: off[:, [each == unit for each in units]].max(initial=0.0) for unit in dict.fromkeys(units)}
+    return " and ".join(f"{float(most):.2g} {unit}" for unit, most in found.items())
 
 
 def write_golden(path: Path, q: Array, line: Array) -> None:
-    """Write the joint angles (cycles, axes) rad and lines (cycles,) of a run; ``Fault`` RBL706."""
+    """Write the joint angles (cycles, axes) rad or m and lines (cycles,) of a run; ``Fault`` RBL706."""
     # with their byte order, so that they are the same on any machine: the reader takes no other
     arrays = {"q": q.astype("<f4"), "line": line.astype("<i4")}
     write_atomic(path, lambda stream: np.savez_compressed(stream, allow_pickle=False, **arrays))

@@ -63,7 +63,7 @@ def judge(
     if expected.end_pose is not None:
         found += _end(expected, _end_pose(session, log))
     found += [_part(report["objects"], name, place, expected.part_mm) for name, place in expected.parts.items()]
-    if expected.golden_deg is not None:
+    if expected.golden_key is not None:
         # a golden log of a run that fails would make the failure the standard
         clean = all(verdict.ok for verdict in found)
         found.append(_update(expected, session, log, clean) if update else _golden(expected, session, log))
@@ -74,8 +74,9 @@ def judge_refused(expected: Expectation, codes: Sequence[str], why: str) -> list
     """Return the verdicts of a program that does not start: its codes are what it ends with, nothing else comes."""
     alarms, *rest = _events(expected, [{"code": code} for code in codes], [], [])
     found = [Verdict(name="alarms", ok=alarms.ok, detail=f"the program does not start: {why}", key=("alarms",)), *rest]
-    names = ("cycle_s", *(key for key, _, _ in _LARGEST), "end_pose", "golden_deg")
+    names = ("cycle_s", *(key for key, _, _ in _LARGEST), "end_pose")
     keys: list[tuple[str, ...]] = [(name,) for name in names if getattr(expected, name) is not None]
+    keys += [(expected.golden_key,)] if expected.golden_key is not None else []
     keys += [("parts", name) for name in expected.parts]
     detail = "nothing to compare, the program does not start"
     return found + [Verdict(name=" ".join(key), ok=False, detail=detail, key=key) for key in keys]
@@ -185,28 +186,29 @@ def _part(objects: dict[str, Any], name: str, place: tuple[float, ...], most: fl
 
 
 def _cycles(session: Session, log: Mapping[str, Array]) -> tuple[Array, Array]:
-    """Return detected joint angles (n, axes), as precise as a golden log has them, and lines (n,) of every cycle."""
+    """Return detected joints (n, axes) rad or m, as precise as a golden log has them, and lines (n,) of every cycle."""
     every = session.project.profile.ticks_per_cycle
     return log["q_fb"][::every].astype(np.float32), log["line"][::every]
 
 
 def _update(expected: Expectation, session: Session, log: Mapping[str, Array], clean: bool) -> Verdict:
-    q, line = _cycles(session, log)
+    (q, line), key = _cycles(session, log), (expected.golden_key or "",)
     if not (clean and np.isfinite(q).all()):
         why = "the run does not meet the other expectations" if not clean else "its angles are not finite"
-        return Verdict(name="golden", ok=False, detail=f"not written, {why}", key=("golden_deg",))
+        return Verdict(name="golden", ok=False, detail=f"not written, {why}", key=key)
     write_golden(expected.golden, q, line)
-    return Verdict(name="golden", ok=True, detail=f"written, {len(q)} cycles", key=("golden_deg",))
+    return Verdict(name="golden", ok=True, detail=f"written, {len(q)} cycles", key=key)
 
 
 def _golden(expected: Expectation, session: Session, log: Mapping[str, Array]) -> Verdict:
-    q, line = _cycles(session, log)
+    (q, line), key = _cycles(session, log), expected.golden_key or ""
     try:
         golden = read_golden(expected.golden, axes=q.shape[1], most_cycles=len(q))
     except Fault as fault:
-        placed = expected.fault(fault.code, fault.message, fault.hint, "golden_deg")
-        return Verdict(name="golden", ok=False, detail=fault.message, key=("golden_deg",), fault=placed)
-    at, detail = golden.difference(q, line, cast("float", expected.golden_deg))
+        placed = expected.fault(fault.code, fault.message, fault.hint, key)
+        return Verdict(name="golden", ok=False, detail=fault.message, key=(key,), fault=placed)
+    kinds = [axis.kind for axis in session.project.cell.robot.axes]
+    at, detail = golden.difference(q, line, [(kind, expected.golden_most(kind)) for kind in kinds])
     if at is not None and len(q):
         profile = session.project.profile
         tick = at * profile.ticks_per_cycle
@@ -214,4 +216,4 @@ def _golden(expected: Expectation, session: Session, log: Mapping[str, Array]) -
         row = min(at, len(line) - 1)
         number = int(log["number"][:: profile.ticks_per_cycle][row])
         detail += f", first at tick {tick} ({tick * profile.tick_s:.3f} s), {named(int(line[row]), number or None)}"
-    return Verdict(name="golden", ok=at is None, detail=detail, key=("golden_deg",))
+    return Verdict(name="golden", ok=at is None, detail=detail, key=(key,))

@@ -117,7 +117,7 @@ COMMANDS = (
         group=Group.RUN,
         do=_continue,
         more="The arm first returns slowly to the path that it has left, or to where the program stood between two\n"
-        "statements before a jog, from 50 mm and 10 deg in a joint at most.\n"
+        "statements before a jog, from 50 mm and 10 deg (mm of a slide) in a joint at most.\n"
         "After an alarm and reset the interrupted statement begins again, from where the arm stands.",
     ),
     Command(

@@ -10,6 +10,8 @@ import pytest
 
 from robolang.testing.golden import read_golden, write_golden
 from runtime.core.faults import Fault
+from runtime.core.units import MM
+from runtime.robot.model.axis_kind import PRISMATIC, REVOLUTE
 from tests.messages import numbers
 
 N = 40
@@ -50,12 +52,17 @@ def with_(array, place, value):
     return array
 
 
+def most(angle):
+    """The same bound of six axes that turn, deg."""
+    return [(REVOLUTE, angle)] * 6
+
+
 def test_what_is_written_is_read(tmp_path):
     path = tmp_path / "g.npz"
     write_golden(path, Q.astype(np.float64), LINE.astype(np.int64))
     found = read_golden(path, 6, N)
     assert found.cycles == N
-    problem, summary = found.difference(Q, LINE, 0.0)
+    problem, summary = found.difference(Q, LINE, most(0.0))
     assert problem is None
     assert numbers(summary) == [N, 0]
     assert len(read_golden(path, 6, 5).q) == 5
@@ -150,8 +157,36 @@ def test_a_run_that_differs_is_named_by_its_first_cycle(tmp_path, value):
     path = tmp_path / "g.npz"
     write_golden(path, Q, LINE)
     golden = read_golden(path, 6, N)
-    assert golden.difference(with_(Q, (7, 4), value), LINE, 1000.0 if value != 9.0 else 0.01)[0] == 7
-    assert golden.difference(Q, with_(LINE, 3, 99), 0.01)[0] == 3
-    assert golden.difference(Q[:30], LINE[:30], 0.01)[0] == 30
-    assert golden.difference(Q[:0], LINE[:0], 0.01)[0] == 0
-    assert golden.difference(np.vstack([Q, Q]), np.hstack([LINE, LINE]), 0.01)[0] == N
+    assert golden.difference(with_(Q, (7, 4), value), LINE, most(1000.0 if value != 9.0 else 0.01))[0] == 7
+    assert golden.difference(Q, with_(LINE, 3, 99), most(0.01))[0] == 3
+    assert golden.difference(Q[:30], LINE[:30], most(0.01))[0] == 30
+    assert golden.difference(Q[:0], LINE[:0], most(0.01))[0] == 0
+    assert golden.difference(np.vstack([Q, Q]), np.hstack([LINE, LINE]), most(0.01))[0] == N
+
+
+@pytest.mark.parametrize(
+    ("off", "mm", "at"), [(0.015, 0.02, None), (0.025, 0.02, 7), (0.5, 0.02, 7), (np.nan, 0.02, 7), (np.nan, np.inf, 7)]
+)
+def test_a_slide_has_a_bound_of_its_own_in_mm(tmp_path, off, mm, at):
+    path = tmp_path / "g.npz"
+    write_golden(path, Q[:, :2] * 0.1, LINE)
+    golden = read_golden(path, 2, N)
+    # the difference itself in double: a float32 of the run would round some nm
+    q = with_(golden.q.astype(np.float64), (7, 1), golden.q[7, 1] + off * MM)
+    found, text = golden.difference(q, LINE, [(REVOLUTE, 0.0), (PRISMATIC, mm)])
+    assert found == at
+    assert "mm" in text
+    if at is None:
+        assert numbers(text) == [N, 0, pytest.approx(off, rel=0.1)]
+    elif np.isfinite(off):
+        assert numbers(text) == [pytest.approx(off, rel=0.01), mm]
+
+
+def test_a_difference_of_a_turn_is_no_less_for_a_slide_beside_it(tmp_path):
+    path = tmp_path / "g.npz"
+    write_golden(path, Q[:, :2], LINE)
+    golden = read_golden(path, 2, N)
+    q = with_(golden.q.astype(np.float64), (3, 0), golden.q[3, 0] + np.radians(0.5))
+    found, text = golden.difference(q, LINE, [(REVOLUTE, 0.1), (PRISMATIC, 1000.0)])
+    assert found == 3
+    assert numbers(text) == [0.5, 0.1]

@@ -11,10 +11,14 @@ from robolang.testing.expectation import Expectation
 from robolang.testing.golden import write_golden
 from robolang.testing.verdict import judge
 from runtime.core.tomlfile import Source
+from runtime.robot.model.axis_kind import PRISMATIC, REVOLUTE
 
 NAN = math.nan
 MEASURES = ("path_deviation_mm", "tool_error_mm", "peak_torque_pct")
-SESSION = SimpleNamespace(project=SimpleNamespace(profile=SimpleNamespace(ticks_per_cycle=2, tick_s=1e-3)))
+ROBOT = SimpleNamespace(axes=[SimpleNamespace(kind=REVOLUTE)] * 6)
+SESSION = SimpleNamespace(
+    project=SimpleNamespace(profile=SimpleNamespace(ticks_per_cycle=2, tick_s=1e-3), cell=SimpleNamespace(robot=ROBOT))
+)
 EXPECTED = {
     "warnings": (),
     "cycle_s": (0.0, 9.0),
@@ -86,3 +90,19 @@ def test_a_time_a_place_and_angles_of_nan_are_not_as_expected(tmp_path):
 @pytest.mark.parametrize(("place", "bad"), [((0, 3), "end"), ((0, 0), "end turn"), ((2, 1), "end turn")])
 def test_a_pose_of_nan_is_not_the_end(tmp_path, place, bad):
     assert judged(tmp_path, X=[place]) == {bad}
+
+
+@pytest.mark.parametrize(
+    ("given", "key", "turns", "slides"),
+    [
+        ({"golden_deg": 0.5}, "golden_deg", 0.5, 0.5),
+        ({"golden_mm": 0.2}, "golden_mm", 0.2, 0.2),
+        ({"golden_deg": 0.5, "golden_mm": 0.2}, "golden_deg", 0.5, 0.2),
+        ({"golden_deg": 0.0, "golden_mm": 0.2}, "golden_deg", 0.0, 0.2),
+        ({}, None, 0.0, 0.0),
+    ],
+)
+def test_a_bound_that_is_left_out_has_the_number_of_the_other_unit(given, key, turns, slides):
+    expected = Expectation(source=Source("a.test.toml", ""), **given)
+    assert expected.golden_key == key
+    assert (expected.golden_most(REVOLUTE), expected.golden_most(PRISMATIC)) == (turns, slides)
