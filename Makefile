@@ -40,13 +40,13 @@ help:
 	@sed -n 's/^# make/make/p' $(MAKEFILE_LIST)
 
 test: $(READY)
-	$(BIN)/python -m pytest -n 2
+	$(BIN)/python -m pytest -n auto --maxprocesses 4
 
 test-ideal: $(READY)
-	$(BIN)/python -m pytest -n 2 -m "not physics"
+	$(BIN)/python -m pytest -n auto --maxprocesses 4 -m "not physics"
 
 campaign: $(READY)
-	CAMPAIGN=1 $(BIN)/python -m pytest -n 2
+	CAMPAIGN=1 $(BIN)/python -m pytest -n auto --maxprocesses 4
 
 gates: $(READY)
 	$(BIN)/ruff format --check .

@@ -45,7 +45,7 @@ def test_a_new_project_has_no_finding_and_the_layout_of_fmt(tmp_path, kind, robo
     robolang("fmt", "--check", program.parent)
 
 
-@pytest.mark.parametrize(("kind", "robot"), some(PAIRS, 0, 4, 8, 9))
+@pytest.mark.parametrize(("kind", "robot"), some(PAIRS, 0, 4, 8))
 def test_a_run_of_a_new_project_is_as_its_test_expects(tmp_path, kind, robot):
     assert judged(made(tmp_path, kind, robot), True) == []
 

@@ -156,7 +156,7 @@ def test_random_moves_of_four_machines_break_no_law(min_hz):
 
 def test_the_campaign_sees_a_pulse_that_is_lost(monkeypatch):
     monkeypatch.setattr(emission, "settle", lambda steps, missing, least, most: steps)
-    assert campaign(40, min_hz=500.0)["cylindrical"].broken["sum"] > 0
+    assert campaign(10, min_hz=500.0)["cylindrical"].broken["sum"] > 0
 
 
 def test_the_campaign_sees_a_step_that_is_too_short(monkeypatch):
