@@ -103,7 +103,11 @@ class Terminal:
         self.until(line)
         start = len(self.raw)
         self.send("\r")
-        self._until(lambda: _in_order(_plain(self.raw[start:]), (*texts, then)), f"{line}: {texts} not shown")
+        self.until_new(start, *texts, then)
+
+    def until_new(self, start: int, *texts: str) -> None:
+        """Read until what was sent from a byte on has the texts, in their order."""
+        self._until(lambda: _in_order(_plain(self.raw[start:]), texts), f"{texts} not shown")
 
     def until_gone(self, text: str) -> None:
         self._until(lambda: not self.shows(text), f"{text} stays on the screen")

@@ -51,14 +51,27 @@ def test_the_prompt_is_there_before_the_controller_and_becomes_ready(opened):
     assert 0 <= terminal.raw.find(b"starting") < terminal.raw.find(READY.encode())
 
 
-@pytest.mark.parametrize(("columns", "rows"), [(150, 40), (80, 24), (60, 20)])
-def test_every_fact_is_on_screens_of_any_width(opened, columns, rows):
+@pytest.mark.parametrize(
+    ("columns", "rows", "kept"), [(150, 40, "comment"), (80, 24, "used in lines"), (60, 20, "configuration")]
+)
+def test_facts_errors_tables_and_the_panel_fit_screens_of_any_width(opened, columns, rows, kept):
     terminal = opened(columns=columns, rows=rows)
     lines = terminal.until(READY)
     for fact in ("MANUAL", "not armed", "frame WORLD", "tool hand", "load 0", "0.000 s", "77.0", "840.0", "overhead"):
         assert terminal.shows(fact), lines
     terminal.send("MOV P4\r")
     terminal.until("error RBL112", "1 | MOV P4", "    | ^^^", "MOVEJ P4")
+    terminal.enter("points", "P1", "P5")
+    found = [at for at, line in enumerate(terminal.lines) if re.match(r"P\d ", line)]
+    assert found == list(range(found[0], found[0] + 5))  # one line a point
+    assert terminal.shows(kept)
+    terminal.send("jog\r")
+    terminal.until(
+        "KEYS", "NOT ARMED", "J1 by 5 deg", "frame world", "speed 25 %", "limit J5", "0.000 s", "q Enter leave"
+    )
+    terminal.send("ez+t")
+    terminal.until("Z by 50 mm", "frame tool")
+    assert sum("KEYS" in line for line in terminal.lines) == 1
 
 
 def test_completion_shows_points_with_their_meaning_and_enter_carries_out(terminal):
@@ -111,14 +124,14 @@ def test_help_at_the_word_keeps_what_is_typed(terminal):
     terminal.until("lets time pass")
 
 
-@pytest.mark.parametrize("key", [" ", "\x1b", "\x03"], ids=["space", "escape", "ctrl-c"])
-def test_a_key_stops_what_runs_and_keeps_the_prompt(terminal, key):
-    terminal.send(f"{LONG}\r")
-    terminal.until(f"prompt  {LONG}")
-    terminal.send(key)
-    terminal.until("stopped", READY)
-    terminal.send("1 + 41\r")
-    terminal.until("42")
+def test_space_escape_and_ctrl_c_stop_what_runs_and_keep_the_prompt(terminal):
+    for at, key in enumerate((" ", "\x1b", "\x03")):
+        terminal.send(f"DELAY {3600 + at}\r")
+        terminal.until(f"prompt  DELAY {3600 + at}")
+        start = len(terminal.raw)
+        terminal.send(key)
+        terminal.until_new(start, "stopped", READY)
+        terminal.enter(f"100 + {at}", f"10{at}")
 
 
 def test_an_arrow_is_not_escape(terminal):
@@ -220,16 +233,6 @@ def test_colours_are_there(terminal):
     assert COLOURS.search(terminal.raw)
 
 
-@pytest.mark.parametrize(("columns", "kept"), [(150, "comment"), (80, "used in lines"), (60, "configuration")])
-def test_a_table_fits_on_its_screen(opened, columns, kept):
-    terminal = opened(columns=columns)
-    terminal.until(READY)
-    terminal.enter("points", "P1", "P5")
-    rows = [at for at, line in enumerate(terminal.lines) if re.match(r"P\d ", line)]
-    assert rows == list(range(rows[0], rows[0] + 5))  # one line a point
-    assert terminal.shows(kept)
-
-
 def test_a_terminal_that_only_shows_lines_gets_lines(opened):
     terminal = opened(TERM="dumb")
     terminal.until(">")
@@ -283,19 +286,6 @@ def test_keys_move_nothing_before_they_are_armed(keys):
     keys.until("MANUAL  not armed", "830.0")
 
 
-@pytest.mark.parametrize(("columns", "rows"), [(150, 40), (80, 24), (60, 20)])
-def test_the_panel_fits_the_screen(opened, columns, rows):
-    terminal = opened(columns=columns, rows=rows)
-    terminal.until(READY)
-    terminal.send("jog\r")
-    terminal.until(
-        "KEYS", "NOT ARMED", "J1 by 5 deg", "frame world", "speed 25 %", "limit J5", "0.000 s", "q Enter leave"
-    )
-    terminal.send("ez+t")
-    terminal.until("Z by 50 mm", "frame tool")
-    assert sum("KEYS" in line for line in terminal.lines) == 1
-
-
 def test_a_held_key_goes_on_until_it_is_released(keys):
     keys.send("ez")
     keys.until("Z by 10 mm")
@@ -321,12 +311,14 @@ def test_a_key_stops_a_jog(keys, key):
     assert not keys.shows("740.0")
 
 
-@pytest.mark.parametrize("key", ["q", "\r", "\x03"], ids=["q", "enter", "ctrl-c"])
-def test_keys_are_left(keys, key):
-    keys.send(key)
-    keys.until("MANUAL  not armed")
-    keys.send("1 + 41\r")
-    keys.until("42")
+def test_q_enter_and_ctrl_c_leave_the_keys(keys):
+    for at, key in enumerate(("q", "\r", "\x03")):
+        keys.until("KEYS")
+        keys.send(key)
+        keys.until_gone("KEYS")
+        keys.until("MANUAL  not armed")
+        keys.enter(f"100 + {at}", f"10{at}")
+        keys.send("jog\r")
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP])
