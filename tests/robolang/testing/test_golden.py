@@ -186,7 +186,9 @@ def test_a_difference_of_a_turn_is_no_less_for_a_slide_beside_it(tmp_path):
     path = tmp_path / "g.npz"
     write_golden(path, Q[:, :2], LINE)
     golden = read_golden(path, 2, N)
+    # the slide is further off, and within its bound
     q = with_(golden.q.astype(np.float64), (3, 0), golden.q[3, 0] + np.radians(0.5))
+    q[3, 1] += 2.0 * MM
     found, text = golden.difference(q, LINE, [(REVOLUTE, 0.1), (PRISMATIC, 1000.0)])
     assert found == 3
     assert numbers(text) == [0.5, 0.1]

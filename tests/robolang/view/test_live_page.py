@@ -13,6 +13,7 @@ from robolang.project.project import load_project
 from robolang.view.beside import LiveBeside
 from robolang.view.live_page import live_page
 from robolang.view.page import Bundle
+from tests.programs.test_scara import CELL as SLIDING
 from tests.robolang.pendant.prompting import prompt
 from tests.robolang.view.browser import PATIENCE_MS, WITHOUT_GL, chromium
 from tests.robolang.view.reaching import assert_all_can_be_reached
@@ -372,6 +373,24 @@ def test_a_step_jog_is_of_its_size(live, served):
     live["teach"].click()
     live["replace"].click(timeout=PATIENCE_MS)
     live.page.wait_for_selector("[data-testid=pendant-said]:not(.refused):has-text('P77')", timeout=PATIENCE_MS)
+
+
+def test_a_joint_that_slides_goes_by_the_steps_of_mm(browser, tmp_path):
+    (tmp_path / "p.rbl").write_text("MOVEJ HERE\n")
+    (tmp_path / "p.cell.toml").write_text(SLIDING.read_text())
+    with viewed(tmp_path / "p.rbl") as (url, _):
+        live = LivePage(browser, url)
+        live.waits_for("Paused")
+        assert "slide" in live["jog-linear"].get_attribute("aria-label")
+        live["jog-frame"].select_option("joint")
+        live["jog-linear"].select_option("10")
+        live["jog-angular"].select_option("5")
+        for axis in ("J3", "J4"):
+            live.page.wait_for_selector(f"[data-testid='jog-{axis}+']:enabled", timeout=PATIENCE_MS)
+            live[f"jog-{axis}+"].click()
+            live.waits_for("Paused")
+        steps = {each["axis"]: each["step"] for each in live.sent if each["do"] == "jog"}
+        assert steps == {"J3": 10, "J4": 5}
 
 
 STALLS = "(() => { const end = performance.now() + 1000; while (performance.now() < end); })()"

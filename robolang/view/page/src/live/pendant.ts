@@ -1,3 +1,4 @@
+import type { JointHead } from "../contract";
 import { button, el, select } from "../dom";
 import type { Connection } from "./connection";
 import { hold, Jogging } from "./jogging";
@@ -18,14 +19,14 @@ export class Pendant {
   private readonly said = el("p", { class: "said", role: "status", "data-testid": "pendant-said" });
   private readonly name = el("input", { type: "text", class: "name", maxlength: 64, placeholder: "name", "aria-label": "Name of the point", "data-testid": "teach-name" });
   private readonly replace: HTMLButtonElement;
-  private readonly joints: number;
+  private readonly joints: readonly JointHead[];
   private frame: (typeof FRAMES)[number][0] = "world";
   private speed: number = 25;
   private linear: number | null = null;
   private angular: number | null = null;
   private remark: string | null = null;
 
-  constructor(connection: Connection, joints: number) {
+  constructor(connection: Connection, joints: readonly JointHead[]) {
     this.connection = connection;
     this.joints = joints;
     this.jogging = new Jogging(connection, (reply) => this.say(reply));
@@ -69,21 +70,22 @@ export class Pendant {
       this.build();
     });
     const speed = select("Speed of a jog, % of 250 mm/s", SPEEDS.map((each) => [each, `${each} %`] as const), this.speed, (value) => (this.speed = value));
-    const linear = select("Step along X, Y and Z", steps(LINEAR, "mm"), held, (value) => (this.linear = stepOf(value)));
+    const sliding = this.joints.some((joint) => joint.unit === "mm");
+    const linear = select(sliding ? "Step along X, Y and Z and of joints that slide" : "Step along X, Y and Z", steps(LINEAR, "mm"), held, (value) => (this.linear = stepOf(value)));
     const angular = select("Step of joints and about X, Y and Z", steps(ANGULAR, "deg"), held, (value) => (this.angular = stepOf(value)));
     for (const [name, made] of Object.entries({ frame, speed, linear, angular })) made.dataset.testid = `jog-${name}`;
     return [frame, speed, linear, angular];
   }
 
   private build(): void {
-    const axes = this.frame === "joint" ? Array.from({ length: this.joints }, (_, k) => `J${k + 1}`) : DIRECTIONS;
-    this.keys.replaceChildren(...axes.map((axis) => el("div", { class: "axis" }, this.key(axis, -1), el("b", {}, axis), this.key(axis, 1))));
+    const axes = this.frame === "joint" ? this.joints.map((joint, k) => [`J${k + 1}`, joint.unit === "mm"] as const) : DIRECTIONS.map((axis) => [axis, axis.length === 1] as const);
+    this.keys.replaceChildren(...axes.map(([axis, linear]) => el("div", { class: "axis" }, this.key(axis, linear, -1), el("b", {}, axis), this.key(axis, linear, 1))));
   }
 
-  private key(axis: string, sign: number): HTMLElement {
+  /** The button of an axis; a `linear` one goes by mm. */
+  private key(axis: string, linear: boolean, sign: number): HTMLElement {
     const word = sign > 0 ? "+" : "−";
     const made = el("button", { type: "button", class: "jog", "aria-label": `Jog ${axis} ${word}`, "data-testid": `jog-${axis}${sign > 0 ? "+" : "-"}` }, word);
-    const linear = axis.length === 1;
     hold(made, () => this.jogging.begin({ axis, sign, frame: this.frame, speed: this.speed, step: linear ? this.linear : this.angular }));
     return made;
   }

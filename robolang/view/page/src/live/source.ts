@@ -74,7 +74,7 @@ export class SocketSource implements Source {
   private greet(hello: Hello): Run {
     this.reader = new FrameReader(hello.layout);
     this.run = new GrowingRun(hello.header, hello.layout);
-    this.pendant = new Pendant(this.connection, hello.header.joints.length);
+    this.pendant = new Pendant(this.connection, hello.header.joints);
     return this.run;
   }
 
