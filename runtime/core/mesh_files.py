@@ -67,7 +67,9 @@ def _stl(raw: bytes) -> tuple[Array, Array]:
     # by its size, not by its first word: binary files may begin with "solid" too
     if len(raw) == _HEADER + 4 + _RECORD * count:
         triangles = np.frombuffer(raw, _TRIANGLE, count, _HEADER + 4)["corners"]
-        corners = triangles.reshape(-1, 3).astype(np.float64)
+        # a NaN of the kind that signals is refused below as any other; numpy would warn of it first
+        with np.errstate(invalid="ignore"):
+            corners = triangles.reshape(-1, 3).astype(np.float64)
     elif raw[:5].lower() == b"solid":
         corners = _numbers([line[1:] for line in _lines(raw) if line[:1] == ["vertex"]])
     else:

@@ -74,6 +74,7 @@ def test_a_face_of_many_corners_becomes_a_fan(tmp_path):
         ("two.stl", b"solid\nvertex 0 0 0\nvertex 1 0 0\n"),
         ("short.stl", b"solid\nvertex 0 0\nvertex 1 0 0\nvertex 1 1 0\n"),
         ("nan.stl", b"solid\nvertex 0 0 nan\nvertex 1 0 0\nvertex 1 1 0\n"),
+        ("signalling_nan.stl", BINARY[:96] + b"\x01\x00\xa0\x7f" + BINARY[100:]),
         ("far.stl", b"solid\nvertex 0 0 1e9\nvertex 1 0 0\nvertex 1 1 0\n"),
         ("line.stl", b"solid\nvertex 0 0 0\nvertex 0 0 0\nvertex 1 1 0\n"),
         ("no_face.obj", b"v 0 0 0\n"),
