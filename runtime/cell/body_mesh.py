@@ -19,6 +19,8 @@ from runtime.core.units import MM
 
 MOST_TRIANGLES = 20_000
 """Triangles of a mesh: the hull of a ball of so many takes a second, and a log holds them all."""
+ROUNDING = 1e-3
+"""Share by which the volume of a hull may be less than it is: its corners are on a grid."""
 MOST_NORMALS = 40
 """Directions in which ``resting`` looks for a gap beside a mesh: those of its largest faces."""
 
@@ -60,13 +62,17 @@ def read_body_mesh(path: Path, name: str, scale: float) -> BodyMesh:
     solid, hull = solid_of(mesh), hull_of(mesh.vertices)
     if hull is None:
         raise NoSolidError("encloses no volume")
+    hull_volume = solid_of(hull).volume
+    # one shell over another, as a file has that was exported twice, would count twice in centre and inertia
+    if not solid.volume <= hull_volume * (1.0 + ROUNDING):
+        raise NoSolidError("overlaps itself: it encloses more than its convex hull")
     return BodyMesh(
         name=name,
         mesh=mesh,
         size=frozen((high - low) * (scale * MM)),
         solid=solid,
         hull=hull,
-        hull_volume=solid_of(hull).volume,
+        hull_volume=hull_volume,
         normals=_normals(hull),
     )
 

@@ -122,7 +122,7 @@ register(
     Code(
         code="RBL644",
         name="mesh-not-solid",
-        meaning="The mesh of a part or an obstacle encloses no volume: it has holes, is inside out or is flat.",
+        meaning="The mesh of a part or an obstacle is no solid: it is open, inside out, flat or overlaps itself.",
         remedy="Repair it where it was made: a closed surface, every triangle counter-clockwise from outside.",
     ),
     Code(

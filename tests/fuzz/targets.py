@@ -30,7 +30,11 @@ from robolang.testing.golden import read_golden
 from runtime.appearance.scene import Scene
 from runtime.appearance.stance import Stance
 from runtime.appearance.views import named_view
+from runtime.cell.body_mesh import read_body_mesh
+from runtime.cell.flat_faces import flat_faces
 from runtime.core.faults import Fault, lookup
+from runtime.core.mesh_files import MeshError
+from runtime.core.solid import NoSolidError
 from runtime.core.tomlfile import FileFault
 from runtime.plant.camera import picture_mjcf
 from runtime.robot.files.importer import read_arm
@@ -147,6 +151,22 @@ def model(data):
         assert all(np.isfinite(axis.placement).all() for axis in arm.axes)
 
 
+def mesh(data):
+    """A file is a solid of finite numbers within its hull, or it is none."""
+    for ending in (".stl", ".obj"):
+        path = _FOLDER / f"fuzz{ending}"
+        path.write_bytes(data)
+        try:
+            body = read_body_mesh(path, path.name, 1.0)
+        except (MeshError, NoSolidError) as error:
+            assert str(error)
+            continue
+        assert np.isfinite(body.solid.gyration).all()
+        assert body.hull_volume >= body.solid.volume * 0.999
+        normals = flat_faces(body).normals
+        assert np.abs((normals**2).sum(axis=1) - 1.0).max(initial=0.0) < 1e-9
+
+
 def golden(data):
     """A golden log is read, finite and no longer than the run, or refused."""
     path = _FOLDER / "fuzz.golden.npz"
@@ -207,10 +227,11 @@ TARGETS = {
     "points": points,
     "cell": cell,
     "model": model,
+    "mesh": mesh,
     "golden": golden,
     "log": log,
 }
-SEEDS = {each: each for each in ("points", "cell", "model", "golden", "log")}
+SEEDS = {each: each for each in ("points", "cell", "model", "mesh", "golden", "log")}
 """The folder of the corpus for each target; ``program`` for the others."""
 
 

@@ -19,6 +19,7 @@ SIZE = "size_mm = [60, 40, 80]"
 HEX = prism(6, 20.0, 80.0)
 BOX = box_mesh((60.0, 40.0, 80.0))
 INWARDS = Mesh(vertices=BOX.vertices, faces=BOX.faces[:, ::-1])
+TWICE = Mesh(vertices=BOX.vertices, faces=np.vstack([BOX.faces, BOX.faces]))
 OPEN = Mesh(vertices=BOX.vertices, faces=BOX.faces[1:])
 
 
@@ -104,6 +105,7 @@ def nan_stl():
         (BOX, 'file = "part.step"', ("RBL643", "file")),
         (BOX, 'file = ""', ("RBL643", "file")),
         (OPEN, 'file = "part.stl"', ("RBL644", "file")),
+        (TWICE, 'file = "part.stl"', ("RBL644", "file")),
         (INWARDS, 'file = "part.stl"', ("RBL644", "file")),
         (Mesh(vertices=BOX.vertices * [1, 1, 0], faces=BOX.faces), 'file = "part.stl"', ("RBL644", "file")),
         (BOX, 'file = "part.stl"\nscale = 1000', ("RBL605", "scale")),
