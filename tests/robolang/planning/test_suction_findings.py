@@ -7,6 +7,7 @@ from robolang.execution.session import Session
 from robolang.planning.motion_findings import findings
 from robolang.project.project import load_project
 from tests.programs.runs import ROOT
+from tests.runtime.meshes import binary_stl, prism
 
 pytestmark = pytest.mark.physics
 
@@ -40,6 +41,16 @@ def checked(job):
 )
 def test_the_rim_must_be_on_the_can(tmp_path, offset, expected):
     assert checked(project(tmp_path, LIFT.format(offset))) == expected
+
+
+@pytest.mark.parametrize(("offset", "codes"), [("", []), (" + (0, 7, 0)", []), (" + (0, 8, 0)", ["RBL441"])])
+def test_a_can_that_is_a_mesh_is_sealed_on_by_check_and_run_alike(tmp_path, offset, codes):
+    (tmp_path / "can.stl").write_bytes(binary_stl(prism(60, 22.5, 60.0)))
+    old = 'shape = "cylinder"\ndiameter_mm = 45\nheight_mm = 60\n'
+    job = project(tmp_path, LIFT.format(offset), old, 'shape = "mesh"\nfile = "can.stl"\n')
+    assert [code for code, _ in checked(job)] == codes
+    (line,) = (entry for entry in Session(job).run().report["statements"] if entry["line"] == 3)
+    assert ("holds 'can_1'" in line["notes"]) == (not codes)
 
 
 def test_a_can_that_is_pulled_harder_than_the_cup_holds_is_lost(tmp_path):
