@@ -12,6 +12,7 @@ need a single statement are reported beside errors of other lines as well. Time 
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
+from dataclasses import replace
 from itertools import chain, islice
 
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
@@ -22,9 +23,10 @@ from robolang.analysis.statement_check import StatementCheck
 from robolang.analysis.symbols import Defined
 from robolang.core.diagnostics import MAX_DIAGNOSTICS, Diagnostic, Related, Severity, has_errors, in_order
 from robolang.core.source import Span
-from robolang.syntax.ast import Line, Program, Unparsed
+from robolang.syntax.ast import Line, Program, Statement, Unparsed
 from robolang.syntax.blocks import Structure
 from robolang.syntax.tree import is_deeper
+from robolang.syntax.unparse import describe
 
 MAX_LEVELS = 150
 """Deepest tree of a statement: expressions are evaluated by recursion, in at most five calls for a level."""
@@ -89,8 +91,20 @@ def _each_statement(
         said: set[tuple[str, Span]] = set()  # two rules may check one expression
         for found in checks.check(line.statement):
             if (found.code, found.span) not in said:
-                yield found
+                yield _advised(found, line.statement)
             said.add((found.code, found.span))
+
+
+def _advised(found: Diagnostic, statement: Statement) -> Diagnostic:
+    """Return an unknown name of a statement that is a line of another language with the statement to write as help."""
+    if found.code != "RBL215" or isinstance(statement, Unparsed):
+        return found
+    from robolang.syntax import foreign_lines
+
+    text = describe(statement)
+    line = foreign_lines.proposal(text)
+    # IF ready THEN is a line of several languages, and of this one
+    return found if line is None or line.statements == (text,) else replace(found, hint=line.advice)
 
 
 def _emptiness(program: Program) -> Iterator[Diagnostic]:

@@ -4,6 +4,7 @@ import re
 from collections.abc import Collection
 
 from robolang.syntax.ast import Chain, Expression, Name, Negate, Text, Vector
+from robolang.syntax.keywords import COMPONENTS6
 from robolang.syntax.unparse import print_expression
 from robolang.values.kinds import Kind
 
@@ -64,6 +65,10 @@ def offset(moved: Expression, sign: str, other: Expression, kind: Kind | None) -
     if sign in ("=", "<>", "<", ">", "<=", ">="):
         return "compare the distance between two poses in mm, DIST(P1, P2) < 0.1, or numbers of them, P1.X < P2.X"
     name, shown = _shown(moved) or "P1", _shown(other)
+    if kind is Kind.POSE and sign == "*" and isinstance(other, Name):
+        # the relative pose of MELFA: all six numbers of the second one, in the first one
+        numbers = ", ".join(f"{shown}.{each}" for each in COMPONENTS6)
+        return f"write the offset and the turn of {shown} in {name}: {name} * ({numbers})"
     if kind is Kind.POSE:
         values = f"{shown}.X, {shown}.Y, {shown}.Z" if isinstance(other, Name) else "x, y, z"
     else:

@@ -101,8 +101,8 @@ class Defined:
 
     @property
     def values(self) -> frozenset[str]:
-        """Names with a value, all that are seen from here."""
-        return frozenset(self._own[None].values | self._here.values | self.seeming)
+        """Names with a value, all that are seen from here; of a line with an error nobody knows which it names."""
+        return frozenset(self._own[None].values | self._here.values)
 
     def look_from(self, sub: int | None) -> None:
         """See the names as the SUB that begins on a line does; None: as the main program does."""

@@ -5,13 +5,14 @@ A statement is proposed only where the reader of this language takes it, and as 
 
 import re
 
-from robolang.syntax.foreign.readings import filled
+from robolang.syntax.foreign.readings import LOST, filled
 from robolang.syntax.foreign.shape import Shape
 from robolang.syntax.foreign.shapes import FIRST, compiled, of
 from robolang.syntax.line_reader import Stopped, line_reader
 from robolang.syntax.unparse import describe
 from runtime.core.record import Record
 
+_NUMBERED = "n is the number of the signal, from 1 on"
 MOST = 160
 """Characters of a line that is still compared with the shapes: what is longer is no statement by hand."""
 BEFORE = re.compile(r"[ \t]*(?:\*\w+(?=[ \t]+\S)|:)?")
@@ -52,14 +53,27 @@ def proposal(code: str) -> Proposal | None:
         words = {**found.groupdict(), "word": first[1]}
         shown = tuple(map(canonical, filled(shape.write, words).splitlines()))
         if all(shown):
-            return Proposal(shape=shape, statements=shown, note=_noted(shape, words))
+            note = _noted(shape, words, _lost(found))
+            # input 0 of URScript has no number here
+            numbered = "IN(n)" in "".join(shown) and "signal" not in note
+            return Proposal(
+                shape=shape, statements=shown, note=f"{_NUMBERED}; {note}".rstrip("; ") if numbered else note
+            )
     return None
 
 
-def _noted(shape: Shape, words: dict[str, str | None]) -> str:
+def _noted(shape: Shape, words: dict[str, str | None], lost: str) -> str:
     """Return what the hint adds: the note of the shape, and what of the line is not carried over."""
-    more = (words.get("more") or "").strip(" \t,")
-    return "; ".join(filter(None, (filled(shape.note, words), more and f"left out: {more}")))
+    # a reading of the note that has found nothing leaves its part empty
+    notes = [filled(each, words) for each in shape.note.split("; ")] if "{" in shape.note else [shape.note]
+    return "; ".join(filter(None, (*notes, lost and f"left out: {lost}")))
+
+
+def _lost(found: "re.Match[str]") -> str:
+    """Return what of a line is not carried over, in its order."""
+    groups = [name for name, text in found.groupdict().items() if text and name.rstrip("0123456789") in LOST]
+    texts = (found[name].strip(" \t,") for name in sorted(groups, key=found.start))
+    return ", ".join(filter(None, texts))
 
 
 def advice(code: str) -> str:

@@ -38,7 +38,13 @@ _ONE_VALUE = "ACCEL is a percentage of acceleration and deceleration"
 # an arc of this language begins where the arm is, so only two of three points are written
 MOVES = (
     Entry("PTP SPTP", (KRL,), JOINTS, _JOINTS),
-    Entry("PTP_REL SPTP_REL", (KRL,), "moves the joints by an offset", "MOVEJ HERE + (0, 0, 50)"),
+    Entry(
+        "PTP_REL SPTP_REL",
+        (KRL,),
+        "moves the joints by angles, or by an offset of the tool point",
+        "MOVEJ HERE + (0, 0, 50)",
+        note="for an offset in mm; no move turns joints by angles: teach a point, or write JOINT(j1, ..., j6)",
+    ),
     Entry("LIN SLIN", (KRL,), LINE, _LINE),
     Entry("LIN_REL SLIN_REL", (KRL,), "moves straight by an offset", _SHIFTED),
     Entry("CIRC SCIRC", (KRL,), ARC, _ARC),
@@ -52,6 +58,13 @@ MOVES = (
     Entry("MOVEP", (UR,), "moves straight at constant speed, blending", "MOVE P1, SPEED 200, ZONE 10"),
     # every motion is planned and checked before it starts, so none follows values that come later
     Entry("SERVOJ SERVOC SPEEDL", (UR,), "follows set-points of the program", _LINE, missing=True),
+    Entry(
+        "STOPMOVE STARTMOVE CLEARPATH STOREPATH RESTOPATH",
+        (RAPID,),
+        "stops a motion or goes on with it",
+        missing=True,
+        note="a program does not go on during a motion; STOP ends it between two moves",
+    ),
     Entry("STOPJ STOPL", (UR,), "brakes a motion", missing=True, note="a move without ZONE stops at its end"),
     Entry("MOV", (MELFA,), JOINTS, _JOINTS),
     Entry("MVS", (MELFA,), LINE, _LINE),

@@ -62,7 +62,14 @@ SIGNALS = (
     Entry("M_OUT M_OUTB M_OUTW", (MELFA,), OUTPUT, _ON),
     Entry("M_IN M_INB M_INW", (MELFA,), INPUT, _READ),
     Entry("IO", (PAC,), "is an input or an output", _ON, note="IN(1) is an input"),
-    Entry("SET_DIGITAL_OUT SET_STANDARD_DIGITAL_OUT SET_TOOL_DIGITAL_OUT SET_ANALOG_OUT", (UR,), OUTPUT, _ON, _FROM_1),
+    Entry("SET_DIGITAL_OUT SET_STANDARD_DIGITAL_OUT SET_ANALOG_OUT", (UR,), OUTPUT, _ON, _FROM_1),
+    Entry(
+        "SET_TOOL_DIGITAL_OUT",
+        (UR,),
+        "sets an output at the flange",
+        _ON,
+        f"{_FROM_1}; HAND ON and HAND OFF move the hand",
+    ),
     Entry("GET_DIGITAL_IN GET_STANDARD_DIGITAL_IN GET_TOOL_DIGITAL_IN GET_ANALOG_IN", (UR,), INPUT, _READ, _FROM_1),
     Entry("WAITTIME", (RAPID,), TIME, "DELAY 0.5"),
     Entry("WAITDI WAITDO WAITGI WAITUNTIL", (RAPID,), CONDITION, _UNTIL),
@@ -134,6 +141,8 @@ CONTROL = (
     Entry("ABORT", (TP, KAREL, PAC), "ends the program", "STOP"),
     Entry("EXITPROG", (OTHERS,), "ends the program", "STOP"),
     Entry("QUIT", (OTHERS,), "ends the program", "STOP"),
+    Entry("RET", (INFORM,), "ends a subroutine", "RETURN"),
+    Entry("EXITCYCLE", (RAPID,), "begins the program again", "GOTO *BEGIN", note="the label is at its beginning"),
     Entry("LBL", (TP,), LABEL, "*L1"),
     Entry("LABEL", (OTHERS,), LABEL, "*L1"),
     Entry("JMP", (TP,), GOTO, "GOTO *L1"),
@@ -169,7 +178,7 @@ CONTROL = (
     Entry("ENDSWITCH", (KRL, VAL3), "ends a SELECT", "ENDSELECT"),
     Entry("ENDCASE", (OTHERS,), "ends a SELECT", "ENDSELECT"),
     Entry("ENDTEST", (RAPID,), "ends a SELECT", "ENDSELECT"),
-    Entry("DEFAULT", (KRL, RAPID, VAL3, C), "is the CASE of all other values", "CASE ELSE"),
+    Entry("DEFAULT", (KRL, RAPID, MELFA, VAL3, C), "is the CASE of all other values", "CASE ELSE"),
     Entry("OTHERWISE", (OTHERS,), "is the CASE of all other values", "CASE ELSE"),
     Entry("ANY", (AS, VPLUS), "is the CASE of all other values", "CASE ELSE"),
     Entry("SWITCH", (KRL, VAL3, C), "chooses by a value", "SELECT n"),
@@ -241,6 +250,8 @@ CONTROL = (
     ),
 )
 
+_IN_CELL = "the cell file has them: [tools.tool1], [frames.frame1]"
+
 DATA = (
     Entry("VAR", (KAREL, VAL3), "declares variables", "x = 5", note="names need no declaration"),
     Entry("VAR PERS NUM ROBTARGET LOCAL", (RAPID,), "declares a variable", "x = 5", note="names need no declaration"),
@@ -261,6 +272,7 @@ DATA = (
     Entry("GETS GETE SETE", (INFORM,), "copies a value", "x = P1.X"),
     Entry("DECOMPOSE", (AS, VPLUS), "takes a point apart", "x = P1.X"),
     Entry("POINT", (AS,), "defines a point", "P10 = P1"),
+    Entry("TOOLDATA WOBJDATA", (RAPID,), "declares a tool or a frame", note=_IN_CELL),
 )
 ASSIGNED = frozenset(
     word

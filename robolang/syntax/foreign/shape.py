@@ -2,6 +2,9 @@
 
 from typing import NamedTuple
 
+ANY = "*"
+"""In place of the first words of a shape: it may begin with any word."""
+
 
 class Shape(NamedTuple):
     """``example`` is a line of ``languages``; ``pattern`` what follows its first word, see ``readings``.

@@ -7,11 +7,9 @@ from robolang.syntax.foreign.cell_shapes import CELL
 from robolang.syntax.foreign.motion_shapes import MOTION
 from robolang.syntax.foreign.program_shapes import PROGRAM
 from robolang.syntax.foreign.readings import expression
-from robolang.syntax.foreign.shape import Shape
+from robolang.syntax.foreign.shape import ANY, Shape
 
 SHAPES = (*MOTION, *CELL, *PROGRAM)
-ANY = "*"
-"""In place of the first words of a shape: it may begin with any word."""
 FIRST = re.compile(r"[ \t]*(\$?\w+|--|//|[^\s\w])")
 
 

@@ -153,7 +153,7 @@ MORE = (
     Line("TP", "PAYLOAD[1]", "PAYLOAD", ("LOAD load1",)),
     Line("TP", "CALL PICK_PART;", ";", ("no ;",)),
     Line("TP", "IF DI[1]=ON,JMP LBL[2]", "[", ("IF IN(1) = 1 THEN GOTO *L2",)),
-    Line("TP", "LBL[3:retry]", "LBL", ("*retry",)),
+    Line("TP", "LBL[3:retry]", "LBL", ("*L3 ' retry",)),
     Line("KAREL", "ENDWHILE", "ENDWHILE", ("WEND",)),
     Line("KAREL", "SIGNAL EVENT[1]", "SIGNAL", ("there is none",)),
     Line("URScript", "movec(p1, p2, a=1.2, v=0.25)", "", ("MOVEC p1, p2, SPEED 250",)),
