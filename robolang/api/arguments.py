@@ -5,7 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from robolang.project.arguments import POSE, numbers, refuse
+from robolang.core.calls import refuse
+from robolang.project.arguments import POSE, numbers
 from robolang.project.project import load_any_robot
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, pose_from_xyzrpy
@@ -13,8 +14,8 @@ from runtime.core.units import DEG, MM
 from runtime.robot.model.payload import NO_PAYLOAD, Payload, declared
 from runtime.robot.model.spec import RobotSpec
 
-PayloadLike = Sequence[float]
-"""Mass kg and, for a payload that is not at the flange, its centre of gravity x, y, z mm."""
+PayloadLike = Sequence[float] | float
+"""Mass kg, or a list of it and, for a payload that is not at the flange, its centre of gravity x, y, z mm."""
 
 
 def robot_of(robot: str | Path | RobotSpec) -> RobotSpec:
@@ -42,7 +43,8 @@ def payload_of(payload: PayloadLike | None, robot: RobotSpec, argument: str, *, 
     if payload is None:
         return NO_PAYLOAD
     # a mass alone hangs at the flange
-    given = (*payload, 0.0, 0.0, 0.0) if len(payload) == 1 else payload
+    listed = (payload,) if isinstance(payload, int | float) else tuple(payload)
+    given = (*listed, 0.0, 0.0, 0.0) if len(listed) == 1 else listed
     mass, *cog = numbers(given, argument, ("mass kg", "x mm", "y mm", "z mm"))
     try:
         rated = max(robot.rated_payload, mass) if heavier else robot.rated_payload

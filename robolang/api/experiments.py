@@ -2,12 +2,14 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Any
 
 import numpy as np
 
 from robolang.api.arguments import PayloadLike, joints_of, payload_of, robot_of
 from robolang.core import tables
+from robolang.core.calls import checked, refuse
+from robolang.core.source import read_program
 from robolang.execution.dry_run import motion_check
 from robolang.execution.session import ProgramError
 from robolang.experiments.compare import VARIANTS, Request
@@ -19,7 +21,7 @@ from robolang.experiments.step import PlantName, StepRequest, StepResult
 from robolang.experiments.step import step as step_once
 from robolang.experiments.weigh import WeighRequest, WeighResult
 from robolang.experiments.weigh import weigh as weigh_once
-from robolang.project.arguments import Files, PathLike, Settings, numbers, options_of, refuse
+from robolang.project.arguments import PathLike, Settings, numbers, options_of
 from robolang.project.project import load_cell_and_settings, load_settings
 from runtime.core.frames import pose
 from runtime.core.units import DEG, MM
@@ -27,9 +29,10 @@ from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import ServoMode
 
 
+@checked
 def step(
     robot: str | Path | RobotSpec,
-    axis: int,
+    axis: int | str,
     *,
     size_deg: float = 0.5,
     size_mm: float = 0.5,
@@ -45,14 +48,16 @@ def step(
     settings: Settings | None = None,
     servo: ServoMode | None = None,
 ) -> StepResult:
-    """Measure the step response of an axis, from 1, at a posture in deg; angles of the result are in rad.
+    """Measure the step response of an axis, 2 or ``"J2"``, at a posture in deg; angles of the result are in rad.
 
-    ``size_mm`` is the step of an axis that slides, with mm in the posture, and m, N and kg in the result.
-    ``payload`` is carried and ``load`` declared: mass kg and centre of gravity x, y, z mm; None: what is carried.
+``size_mm`` is the step of an axis that slides, with mm in the posture, and m, N and kg in the result.
+    ``payload`` is carried and ``load`` declared: a mass, kg, or mass and centre of gravity x, y, z mm; None: what is
+    carried.
     ``tool``: the tool point in the flange, mm. ``Fault`` RBL703 for an argument, RBL516 where the arm touched
     something.
     """
     spec = robot_of(robot)
+    index = _axis_of(axis, spec)
     # the tool decides where the rated payload sits, and with it whether gains are stable
     point = np.array(numbers(tool, "tool", ("x mm", "y mm", "z mm"))) * MM
     options = options_of({"settings": settings, "servo": servo})
@@ -60,9 +65,9 @@ def step(
     carried = payload_of(payload, spec, "payload")
     request = StepRequest(
         robot=spec,
-        axis=axis - 1,
+        axis=index,
         q=joints_of(joints, spec),
-        size=size_mm * MM if _slides(spec, axis) else size_deg * DEG,
+        size=size_mm * MM if spec.axes[index].kind.slides else size_deg * DEG,
         carried=carried,
         declared=carried if load is None else payload_of(load, spec, "load"),
         profile=in_force.profile,
@@ -79,9 +84,13 @@ def step(
         refuse("axis, joints or size", str(error))
 
 
-def _slides(spec: RobotSpec, axis: int) -> bool:
-    # an axis that the robot has not is refused with the posture
-    return 1 <= axis <= spec.n and spec.axes[axis - 1].kind.slides
+def _axis_of(axis: int | str, robot: RobotSpec) -> int:
+    """Return the index of an axis, from 0; ``Fault`` RBL703."""
+    names = {f"J{number}": number for number in range(1, robot.n + 1)}
+    number = names.get(axis.upper()) if isinstance(axis, str) else int(axis)
+    if number is None or number not in names.values():
+        refuse("axis", f"{axis!r} is not one of 1 to {robot.n} or J1 to J{robot.n}")
+    return number - 1
 
 
 class Comparison(list[dict[str, Any]]):
@@ -101,13 +110,18 @@ class Comparison(list[dict[str, Any]]):
         return {name: [row[name] for row in self] for name in names}
 
 
+@checked
 def compare(
     program: PathLike,
     *,
     only: Sequence[str] | None = None,
     physics: bool = True,
     jobs: int = 1,
-    **files: Unpack[Files],
+    cell: PathLike | None = None,
+    robot: PathLike | None = None,
+    profile: PathLike | None = None,
+    settings: Settings | None = None,
+    servo: ServoMode | None = None,
 ) -> Comparison:
     """Run a program with scheduled and fixed gains, right and wrong LOADs, and return a row for each variant.
 
@@ -119,9 +133,14 @@ def compare(
     for name in only or ():
         if name not in known:
             refuse("only", f"'{name}' is not one of {', '.join(known)}")
-    cell, robot, profile = (None if given is None else str(given) for given in map(files.get, _PATHS))
+    options = options_of({"settings": settings, "servo": servo})
     request = Request(
-        program=str(program), cell=cell, robot=robot, profile=profile, options=options_of(files), physics=physics
+        program=str(program),
+        cell=_text(cell),
+        robot=_text(robot),
+        profile=_text(profile),
+        options=options,
+        physics=physics,
     )
     variants = [variant for variant in VARIANTS if only is None or variant.name in only]
     first = request.project(variants[0] if variants else VARIANTS[0])
@@ -133,9 +152,11 @@ def compare(
     return Comparison(compare_all(request, tuple(variants), jobs))
 
 
-_PATHS = ("cell", "robot", "profile")
+def _text(path: PathLike | None) -> str | None:
+    return None if path is None else str(path)
 
 
+@checked
 def identify(
     robot: str | Path | RobotSpec,
     *,
@@ -165,26 +186,32 @@ def identify(
     return identify_all(request)
 
 
+@checked
 def weigh(
     program: PathLike | None = None,
     *,
     payload: PayloadLike | None = None,
     amplitude_deg: float | None = None,
     plant: PlantName = "mujoco",
-    **files: Unpack[Files],
+    cell: PathLike | None = None,
+    robot: PathLike | None = None,
+    profile: PathLike | None = None,
+    settings: Settings | None = None,
+    servo: ServoMode | None = None,
 ) -> WeighResult:
     """Move the arm in the cell of a program and weigh what it carries; without a program in the built-in cell.
 
     ``payload``: a body beside the hand, as of ``step``. ``Fault`` where the motion is refused or an alarm ends it.
     """
-    where, options = None if program is None else Path(program), options_of(files)
-    robot = files.get("robot")
-    cell, in_force = load_cell_and_settings(
-        where, files.get("cell"), None if robot is None else str(robot), files.get("profile"), options
+    if program is not None:
+        read_program(program)  # for its cell: the text alone shows that it is a program
+    options = options_of({"settings": settings, "servo": servo})
+    spec, in_force = load_cell_and_settings(
+        None if program is None else Path(program), cell, _text(robot), profile, options
     )
     request = WeighRequest(
-        cell=cell,
-        added=None if payload is None else payload_of(payload, cell.robot, "payload"),
+        cell=spec,
+        added=None if payload is None else payload_of(payload, spec.robot, "payload"),
         profile=in_force.profile,
         plant=plant,
         amplitude=None if amplitude_deg is None else amplitude_deg * DEG,

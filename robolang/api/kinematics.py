@@ -8,6 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from robolang.api.arguments import joints_of, pose_of, robot_of
+from robolang.core.calls import checked
 from runtime.core.frames import Array, xyzrpy_from_pose
 from runtime.core.frames import inverse as inverted
 from runtime.core.linear import matmul
@@ -37,6 +38,7 @@ class JointSolution:
     margin_deg: float
 
 
+@checked
 def forward(robot: str | Path | RobotSpec, joints: Sequence[float], *, tool: Sequence[float] | None = None) -> Pose:
     """Return the pose of the tool in the base at joints, deg, of an axis that slides mm.
 
@@ -48,6 +50,7 @@ def forward(robot: str | Path | RobotSpec, joints: Sequence[float], *, tool: Seq
     return Pose(*_plain(xyzrpy_from_pose(X) / ([MM] * 3 + [DEG] * 3)))
 
 
+@checked
 def inverse(
     robot: str | Path | RobotSpec, pose: Sequence[float], *, tool: Sequence[float] | None = None
 ) -> list[JointSolution]:

@@ -255,8 +255,9 @@ register(
     Code(
         code="RBL703",
         name="option-value",
-        meaning="An option of the command line has a value that is not allowed.",
-        remedy="See the help of the command, robolang COMMAND --help.",
+        meaning="An option of the command line, or an argument of a function of Python, is unknown or has a value "
+        "that is not allowed.",
+        remedy="See the help of the command, robolang COMMAND --help; docs/python.md has the functions of Python.",
     ),
     Code(
         code="RBL706",
@@ -282,7 +283,7 @@ register(
         name="robot-does-not-fit-cell",
         meaning="The robot of the command line does not fit the home position of the cell: it has another number of "
         "axes, or the position is outside its joint ranges.",
-        remedy="Give a cell file made for that robot with --cell.",
+        remedy="Name a cell file made for that robot.",
     ),
     Code(
         code="RBL710",

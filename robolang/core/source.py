@@ -122,8 +122,8 @@ def read_bytes(name: str) -> bytes:
         _refuse(name, refused)
 
 
-def check_there(name: str) -> None:
-    """Raise ``FileFault`` RBL701 for a program that does not exist, where its text is not read."""
+def check_path(name: str) -> None:
+    """Raise ``FileFault`` RBL701 for a program or a folder that does not exist."""
     if "\0" in name or not os.path.exists(name):  # noqa: PTH110 - Path would add nothing
         _fail("RBL701", f"there is no file {name}", _neighbour(name), path=name)
 

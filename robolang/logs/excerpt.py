@@ -44,7 +44,7 @@ class Excerpt(HumanUnits, Mapping[str, Array]):
     def __getitem__(self, name: str) -> Array:
         """Return rows of a signal; ``KeyError``."""
         if name not in self:
-            raise KeyError(name)
+            raise KeyError(f"there is no signal of ticks {name!r}; these are known: {', '.join(self)}")
         # once for each name of a long log: what is kept of it is kept there
         return np.asarray(self.log[name][self.ticks])
 

@@ -5,6 +5,7 @@ Both repeat byte for byte: neither carries the time of day, or where the program
 
 from pathlib import Path
 
+from robolang.core.calls import checked
 from robolang.core.storage import write_atomic
 from robolang.logs.log import Log
 from robolang.logs.mcap_file import write_mcap
@@ -23,6 +24,7 @@ def write_log(path: Path, log: Log) -> None:
     write_atomic(path, lambda stream: _WRITERS[path.suffix](stream, log))
 
 
+@checked
 def read_log(path: Path | str) -> Log:
     """Return the log in a file of ``robolang run --log``; its signals are read when they are used.
 

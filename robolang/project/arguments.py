@@ -2,10 +2,9 @@
 
 from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, NoReturn, TypedDict
+from typing import Any, TypedDict
 
-import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
-from runtime.core.faults import Fault
+from robolang.core.calls import refuse
 from runtime.settings.profile import ServoMode
 
 PathLike = Path | str
@@ -25,11 +24,6 @@ class Files(TypedDict, total=False):
     profile: PathLike | None
     settings: Settings | None
     servo: ServoMode | None
-
-
-def refuse(argument: str, message: str) -> NoReturn:
-    """Raise ``Fault`` RBL703 for an argument."""
-    raise Fault("RBL703", f"{argument}: {message}")
 
 
 def numbers(values: Sequence[float], argument: str, names: Sequence[str]) -> tuple[float, ...]:

@@ -7,9 +7,10 @@ hand, a table and a part, with P1 to P5 taught (docs/language.md).
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, Unpack
+from typing import Any
 
 from robolang.analysis.analysis import Analysis
+from robolang.core.calls import checked, refuse
 from robolang.core.diagnostics import Diagnostic, has_errors
 from robolang.core.source import Source, read_program
 from robolang.project import discovery
@@ -36,6 +37,8 @@ from runtime.settings.layers import (
 )
 from runtime.settings.profile import Profile, ServoMode
 
+_READ = 'Read it: cell=pathlib.Path("cell.toml").read_text("utf-8"); Project.load takes the path of a cell.'
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Project:
@@ -52,22 +55,37 @@ class Project:
     settings: Settings
 
     @classmethod
-    def load(cls, program: PathLike, **files: Unpack[Files]) -> "Project":
+    @checked
+    def load(
+        cls,
+        program: PathLike,
+        *,
+        cell: PathLike | None = None,
+        robot: PathLike | None = None,
+        profile: PathLike | None = None,
+        settings: Mapping[str, Any] | None = None,
+        servo: ServoMode | None = None,
+    ) -> "Project":
         """Read a program and the files beside it, or those that are named.
 
         Raises ``FileFault`` or ``Fault`` for a file or an argument that cannot be used; errors of the program itself
         are in ``diagnostics``.
         """
-        return _given(program, files.get("cell"), files)
+        return _given(program, cell, Files(robot=robot, profile=profile, settings=settings, servo=servo))
 
     @classmethod
+    @checked
     def from_text(
         cls,
         text: str,
         *,
         points: Mapping[str, Sequence[float]] | None = None,
         name: str = "program.rbl",
-        **files: Unpack[Files],
+        cell: str | None = None,
+        robot: PathLike | None = None,
+        profile: PathLike | None = None,
+        settings: Mapping[str, Any] | None = None,
+        servo: ServoMode | None = None,
     ) -> "Project":
         """Return the project of a text; nothing of it need be on the disk.
 
@@ -75,15 +93,17 @@ class Project:
         ``cell`` is the text of a cell file here; None: the built-in cell. ``name`` stands in messages. Raises as
         ``load``.
         """
-        where, cell = Path(name), files.get("cell")
+        if cell is not None and cell.endswith(".toml") and "\n" not in cell:
+            refuse("cell", f"the text of a cell file is needed, but {cell!r} is a path", _READ)
+        where = Path(name)
         texts = {
             discovery.points_file(where): None if points is None else points_text(points),
-            discovery.own_cell(where): None if cell is None else str(cell),
+            discovery.own_cell(where): cell,
             # what happens to lie in the working folder is not meant
             where.with_name("cell.toml"): None,
         }
         typed = Typed(analysis=Analysis(source=Source(name, text)), texts=texts)
-        return _given(typed, None, files)
+        return _given(typed, None, Files(robot=robot, profile=profile, settings=settings, servo=servo))
 
     @property
     def source(self) -> Source:

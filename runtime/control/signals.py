@@ -133,7 +133,7 @@ class Signals(Mapping[str, Array]):
         """Return rows ``first`` to before ``last`` of a signal, computed without the others; ``KeyError``."""
         # of an angle that is not finite follow poses of NaN, which say enough
         with np.errstate(invalid="ignore", over="ignore"):
-            return np.ascontiguousarray(_MADE[name](self, first, last))
+            return np.ascontiguousarray(_maker(name)(self, first, last))
 
     def each_cycle(self, name: str) -> Array:
         """Return a signal of ``OF_CYCLES`` with one row for each cycle, where ``self[name]`` repeats it each tick."""
@@ -247,5 +247,13 @@ _MADE: dict[str, _Make] = {
     "fingers": _recorded("fingers"),
 }
 """How each signal is made, in the order of a log."""
+
+
+def _maker(name: str) -> _Make:
+    if name not in _MADE:
+        raise KeyError(f"there is no signal {name!r}; these are known: {', '.join(_MADE)}")
+    return _MADE[name]
+
+
 NAMES = tuple(_MADE)
 """All signals, in the order of a log."""

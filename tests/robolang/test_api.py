@@ -7,6 +7,8 @@ import re
 import subprocess
 import sys
 import textwrap
+from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -127,6 +129,15 @@ def refusals():
         "only": lambda: robolang.compare("programs/pick_and_place.rbl", only=["x"]),
         "points": lambda: robolang.Project.from_text("MOVE P1\n", points={"A b": (0,) * 6}),
         "select": lambda: robolang.check(select=["RBL9x"]),
+        "physics": lambda: robolang.run(program, physics="no"),
+        "realtime": lambda: robolang.run(program, realtime=1),
+        "cell": lambda: robolang.Project.from_text("MOVE P1\n", cell="cell.toml"),
+        "text": lambda: robolang.Project.from_text(5),
+        "program": lambda: robolang.run(5),
+        "plant": lambda: robolang.identify("puma560", plant="steel"),
+        "positions": lambda: robolang.identify("puma560", positions=1.5),
+        "size_deg": lambda: robolang.step("puma560", 1, size_deg="a"),
+        "path": lambda: robolang.read_log(5),
     }
 
 
@@ -138,6 +149,86 @@ def test_a_wrong_argument_is_named_and_no_option(monkeypatch, argument):
     assert caught.value.code in ("RBL703", "RBL610")
     assert caught.value.message.startswith(argument)
     assert "--" not in str(caught.value)
+
+
+WORDS: Any = ["a"] * 6
+FORWARD: Any = robolang.forward
+PROGRAM = "programs/pick_and_place.rbl"
+WRONG_KINDS: dict[str, Any] = {
+    "joints": lambda: robolang.forward("puma560", WORDS),
+    "max_time_s": lambda: robolang.run(PROGRAM, max_time_s="a"),
+    "pose": lambda: robolang.inverse("puma560", None),
+    "points": lambda: robolang.Project.from_text("MOVE P1\n", points=5),
+    "axis": lambda: robolang.step("puma560", "J7"),
+    "settings": lambda: robolang.plan(PROGRAM, settings=["servo.mode"]),
+    "robot": lambda: robolang.forward(np.zeros(6), np.zeros(6)),
+    "payload": lambda: robolang.step("puma560", 1, payload="5"),
+}
+
+
+@pytest.mark.parametrize("argument", WRONG_KINDS)
+def test_an_argument_of_another_kind_is_refused(monkeypatch, argument):
+    monkeypatch.chdir(ROOT.parent)
+    with pytest.raises(robolang.Fault) as caught:
+        WRONG_KINDS[argument]()
+    assert (caught.value.code, caught.value.message.partition(":")[0]) == ("RBL703", argument)
+    assert "--" not in caught.value.hint
+
+
+MISSPELT = {
+    "run": ("phsyics", "physics", lambda **given: robolang.run(PROGRAM, **given)),
+    "plan": ("max_time", "max_time_s", lambda **given: robolang.plan(PROGRAM, **given)),
+    "compare": ("phisics", "physics", lambda **given: robolang.compare(PROGRAM, **given)),
+    "identify": ("position", "positions", lambda **given: robolang.identify("puma560", **given)),
+    "weigh": ("robt", "robot", lambda **given: robolang.weigh(PROGRAM, **given)),
+    "step": ("sizedeg", "size_deg", lambda **given: robolang.step("puma560", 1, **given)),
+    "load": ("robt", "robot", lambda **given: robolang.Project.load(PROGRAM, **given)),
+    "from_text": ("pionts", "points", lambda **given: robolang.Project.from_text("MOVE P1\n", **given)),
+    "check": ("ignored", "ignore", lambda **given: robolang.check(PROGRAM, **given)),
+    "check_text": ("nam", "name", lambda **given: robolang.check_text("MOVE P1\n", **given)),
+    "forward": ("tol", "tool", lambda **given: robolang.forward("puma560", [0] * 6, **given)),
+    "inverse": ("tol", "tool", lambda **given: robolang.inverse("puma560", [0] * 6, **given)),
+    "read_log": ("pth", "path", lambda **given: robolang.read_log(**given)),
+}
+
+
+@pytest.mark.parametrize("function", MISSPELT)
+def test_an_argument_that_is_misspelt_is_refused_with_the_nearest_one(monkeypatch, function):
+    monkeypatch.chdir(ROOT.parent)
+    word, nearest, call = MISSPELT[function]
+    with pytest.raises(robolang.Fault) as caught:
+        call(**{word: None})
+    assert caught.value.code == "RBL703"
+    assert caught.value.message.startswith(f"{word}: {function} ")
+    assert nearest in caught.value.hint
+
+
+def test_an_argument_that_is_missing_or_too_many_is_refused():
+    for given in (("puma560",), ("puma560", [0] * 6, [0] * 6)):
+        with pytest.raises(robolang.Fault, match="RBL703") as caught:
+            FORWARD(*given)
+        assert caught.value.message.startswith("forward: ")
+
+
+def test_numbers_of_numpy_and_paths_are_arguments_too(monkeypatch):
+    monkeypatch.chdir(ROOT.parent)
+    plain = robolang.step("puma560", 2, payload=(2.5,), seconds=0.5)
+    other = robolang.step("puma560", "J2", payload=2.5, seconds=np.float64(0.5), ideal_drives=np.False_)
+    assert (plain.inertia, plain.peak_torque) == (other.inertia, other.peak_torque)
+    assert robolang.forward("puma560", np.zeros(6)) == robolang.forward("puma560", [0] * 6)
+    assert robolang.plan(ROOT / "pick_and_place.rbl", robot=Path("puma560")).ok
+
+
+def test_a_program_that_is_not_there_is_refused(folder):
+    for call in (robolang.check, robolang.weigh, robolang.plan):
+        with pytest.raises(robolang.FileFault, match="RBL701"):
+            call("nix")
+
+
+def test_a_signal_that_is_none_is_refused_with_those_that_are(ran):
+    for log in (ran.log, ran.log.at_line(60)):
+        with pytest.raises(KeyError, match=r"nix.*q_cmd"):
+            log["nix"]
 
 
 def test_kinematics_lead_back(folder):

@@ -35,11 +35,11 @@ def show(program: OptionalProgram, files: CellOptions, controller: ControllerOpt
     """
     settings = settings_of(controller)
     with reported():
-        # the text is not read, so a name that is misspelt would show the settings of the built-in cell
+        # a name that is misspelt, or no program, would show the settings of the built-in cell
         if program is not None:
-            from robolang.core.source import check_there
+            from robolang.core.source import read_program
 
-            check_there(program)
+            read_program(program)
         from robolang.project.project import load_cell_and_settings
 
         found, in_force = load_cell_and_settings(

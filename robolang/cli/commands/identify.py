@@ -147,14 +147,14 @@ def _request(subject: str, options: _ExperimentOptions) -> "Request":
 
 def _subject(subject: str) -> "tuple[RobotSpec, Profile, Payload]":
     """Return robot, controller and what hangs on the flange: of a program's cell, or of a robot on its own."""
-    from robolang.core.source import check_there
+    from robolang.core.source import read_program
     from robolang.project.project import load_any_robot, load_cell_and_settings
     from runtime.robot.model.payload import NO_PAYLOAD, Payload
     from runtime.settings.profile import Profile
 
     if not subject.lower().endswith(".rbl"):
         return load_any_robot(subject), Profile(), NO_PAYLOAD
-    check_there(subject)
+    read_program(subject)
     cell, settings = load_cell_and_settings(Path(subject), None, None, None, {})
     return cell.robot, settings.profile, Payload(mass=cell.hand.mass, cog=cell.hand.cog)
 

@@ -66,9 +66,9 @@ def weigh(program: OptionalProgram, files: CellOptions, options: _PayloadOptions
         raise OptionValueError("--amplitude", f"{shown} is not above 0 and at most {most} deg")
     with reported():
         if program is not None:
-            from robolang.core.source import check_there
+            from robolang.core.source import read_program
 
-            check_there(program)
+            read_program(program)
         _weigh(program, files, options, output)
 
 
