@@ -12,7 +12,7 @@ from robolang.core.calls import checked, refuse
 from robolang.core.source import read_program
 from robolang.execution.dry_run import motion_check
 from robolang.execution.session import ProgramError
-from robolang.experiments.compare import VARIANTS, Request
+from robolang.experiments.compare import VARIANTS, Request, Variant
 from robolang.experiments.compare import compare as compare_all
 from robolang.experiments.excitation import Request as Identification
 from robolang.experiments.identify import AxisResult
@@ -129,10 +129,7 @@ def compare(
     script that uses more than one needs ``if __name__ == "__main__":``. Supervision is off in every row. Raises as
     ``run``.
     """
-    known = {variant.name: variant for variant in VARIANTS}
-    for name in only or ():
-        if name not in known:
-            refuse("only", f"'{name}' is not one of {', '.join(known)}")
+    variants = _variants(only)
     options = options_of({"settings": settings, "servo": servo})
     request = Request(
         program=str(program),
@@ -142,14 +139,21 @@ def compare(
         options=options,
         physics=physics,
     )
-    variants = [variant for variant in VARIANTS if only is None or variant.name in only]
     first = request.project(variants[0] if variants else VARIANTS[0])
     # before twelve runs, each of which would end in the same refusal
     if not first.ok:
         raise ProgramError(first, first.diagnostics)
     if refused := motion_check(first):
         raise ProgramError(first, refused, planned=True)
-    return Comparison(compare_all(request, tuple(variants), jobs))
+    return Comparison(compare_all(request, variants, jobs))
+
+
+def _variants(only: Sequence[str] | None) -> tuple[Variant, ...]:
+    known = [variant.name for variant in VARIANTS]
+    for name in only or ():
+        if name not in known:
+            refuse("only", f"'{name}' is not one of {', '.join(known)}")
+    return tuple(variant for variant in VARIANTS if only is None or variant.name in only)
 
 
 def _text(path: PathLike | None) -> str | None:

@@ -48,10 +48,8 @@ def load(name: str, shown: str = "<stdin>") -> Loaded:
     return Loaded(name=name, mark=mark, source=decode_program(shown, raw))
 
 
-def read(name: str) -> "str | Analysis":
-    """Return a program as ``load_project`` takes it: its path, and the text of the standard input for ``-``."""
-    if name != STDIO:
-        return name
+def read(name: str) -> "Analysis":
+    """Return a program as ``load_project`` takes it, that of the standard input for ``-``; faults as ``load``."""
     from robolang.analysis.analysis import Analysis
 
     return Analysis(source=load(name).source)

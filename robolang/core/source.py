@@ -12,6 +12,7 @@ device is refused and never waited for.
 import errno
 import os
 import re
+import stat
 from bisect import bisect_right
 from functools import cached_property
 from pathlib import Path
@@ -113,9 +114,7 @@ def decode_program(name: str, raw: bytes) -> Source:
 
 def read_bytes(name: str) -> bytes:
     """Return the bytes of a program file, at most ``MAX_BYTES``; ``FileFault`` RBL701, RBL702, RBL106."""
-    if name.endswith((".npz", ".mcap")):
-        hint = f"Give the program. 'robolang report {name}' shows the log in a page."
-        _fail("RBL702", f"{name} is the log of a run, not a program", hint, path=name)
+    _refuse_other_kind(name)
     try:
         return read_bounded(name, MAX_BYTES)
     except RefusedError as refused:
@@ -128,12 +127,40 @@ def check_path(name: str) -> None:
         _fail("RBL701", f"there is no file {name}", _neighbour(name), path=name)
 
 
+_OF_A_PROGRAM = {".cell.toml": "a cell file", ".points.toml": "a points file", ".test.toml": "a test file"}
+_SHOWN = 3
+
+
+def _refuse_other_kind(name: str) -> None:
+    """Raise ``FileFault`` RBL702 for what the name shows to be no program."""
+    if name.endswith((".npz", ".mcap")):
+        hint = f"Give the program. 'robolang report {name}' shows the log in a page."
+        _fail("RBL702", f"{name} is the log of a run, not a program", hint, path=name)
+    for ending, kind in _OF_A_PROGRAM.items():
+        if name.endswith(ending):
+            program = f"{name.removesuffix(ending)}.rbl"
+            _fail("RBL702", f"{name} is {kind}, not a program", f"Give the program: {program}", path=name)
+    if name.endswith(".toml"):
+        _fail("RBL702", f"{name} is a file with settings, not a program", "Give the program (.rbl).", path=name)
+
+
+def _programs_in(folder: str) -> str:
+    """Return a hint that names the programs of a folder, or ``""``."""
+    try:
+        found = sorted(each for each in os.listdir(folder) if each.endswith(".rbl"))  # noqa: PTH208
+    except OSError:
+        return ""
+    shown = [os.path.normpath(os.path.join(folder, each)) for each in found[:_SHOWN]]  # noqa: PTH118
+    return f"Name the file: {', '.join(shown)}{', ...' if len(found) > _SHOWN else ''}" if found else ""
+
+
 def _refuse(name: str, refused: RefusedError) -> NoReturn:
     """Raise the ``FileFault`` of a file that is not read."""
     error = refused.error
     # before the size: a folder or a pipe opens without an error, too
     if refused.mode is not None:
-        _fail("RBL702", f"{name} is {kind_text(refused.mode)}, not a file", path=name)
+        hint = _programs_in(name) if stat.S_ISDIR(refused.mode) else ""
+        _fail("RBL702", f"{name} is {kind_text(refused.mode)}, not a file", hint, path=name)
     if error is None:
         _fail("RBL106", f"{name} has {refused.size} bytes, more than {MAX_BYTES}", path=name)
     if refused.opened:

@@ -243,6 +243,28 @@ def write_folder(path: Path, files: Mapping[str, bytes], ours: Callable[[str], b
         _refuse(path, error)
 
 
+@contextmanager
+def made_folders(folder: Path) -> Iterator[None]:
+    """Make a folder and those above it that are missing; they are removed where what follows raises. ``Fault`` RBL706.
+
+    Also where the caller is interrupted: nothing half-written is left.
+    """
+    made: list[Path] = []
+    try:
+        try:
+            for missing in reversed([each for each in (folder, *folder.parents) if not each.exists()]):
+                missing.mkdir()
+                made.append(missing)
+        except OSError as error:
+            _refuse(folder, error)
+        yield
+    except BaseException:
+        for each in reversed(made):
+            with suppress(OSError):  # somebody else may have put something into it
+                each.rmdir()
+        raise
+
+
 def add_files(folder: Path, files: Mapping[str, bytes]) -> None:
     """Write files into a folder, all or none, with the folders that their names have; ``Fault`` RBL706.
 

@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from robolang.core.storage import add_files, only_one, write_folder
+from robolang.core.storage import add_files, made_folders, only_one, write_folder
 from robolang.templates.arm import choose
 from robolang.templates.template import template
 from runtime.core.faults import Fault
@@ -35,13 +35,18 @@ class Written(Record):
 
 
 def new_project(folder: Path, kind: str, robot: str) -> Written:
-    """Write a project into a new folder; ``Fault`` RBL706, RBL708, RBL840 to RBL843, ``FileFault`` for a robot file."""
+    """Write a project into a new folder, with those above it.
+
+    ``Fault`` RBL706, RBL708, RBL840 to RBL843, ``FileFault`` for a robot file.
+    """
     name = checked_name(folder.name)
     if os.path.lexists(folder):
         raise Fault("RBL841", f"{folder} exists already", "Give another name, or call 'robolang init' in that folder.")
     made = _made(name, folder, kind, robot)
     files = {**made.job, **made.beside}
-    write_folder(folder, files, ours=lambda _: False)
+    # after the placing: a job that does not fit leaves no folder
+    with made_folders(folder.absolute().parent):
+        write_folder(folder, files, ours=lambda _: False)
     return _written(folder, name, files, (), made.fitted)
 
 

@@ -3,7 +3,6 @@
 Every picture comes from a command that a reader has too; pages are opened in a browser without a network.
 """
 
-import os
 import re
 import shutil
 import subprocess
@@ -15,6 +14,7 @@ from pathlib import Path
 from PIL import Image
 
 from robolang.__main__ import main
+from tests.pages import blocks_of, follow
 from tests.robolang.view.browser import Tab, chromium
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
@@ -134,11 +134,8 @@ def plot(work: Path) -> None:
 
 def tutorial(work: Path) -> None:
     """The job of the tutorial after its last step, by the commands of the page itself."""
-    root = FOLDER.parents[1]
-    blocks = re.findall(r"^```sh\n(.*?)^```", (root / "docs" / "tutorial.md").read_text("utf-8"), re.M | re.S)
-    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
-    subprocess.run(["bash", "-eu", "-c", "".join(blocks)], cwd=root, env={**os.environ, "PATH": path}, check=True)
-    shutil.copy(root / "out" / "tutorial" / "post.png", FOLDER / "tutorial.png")
+    follow("".join(blocks_of("tutorial")), work)
+    shutil.copy(work / "out" / "tutorial" / "post.png", FOLDER / "tutorial.png")
 
 
 PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, plan, live, robots, plot, tutorial)

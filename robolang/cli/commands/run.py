@@ -55,6 +55,8 @@ def run(
     """
     settings = settings_of(controller)
     with reported():
+        # the program first: where it is misspelt, its files have the wrong names, too
+        analysis = read(program)
         _check_outputs(program, files, output)
         check_follow(follow)
         if simulation.until_line is not None and follow.view:
@@ -63,7 +65,7 @@ def run(
 
         # planning a long program takes its time, and there is no session yet that a signal could stop
         with handled(_left_before_motion):
-            project = load_project(read(program), files.cell, files.robot, profile=controller.profile, options=settings)
+            project = load_project(analysis, files.cell, files.robot, profile=controller.profile, options=settings)
             from robolang.execution.plan_memory import PlanMemory
 
             plans = PlanMemory(project)

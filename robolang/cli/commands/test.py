@@ -99,8 +99,7 @@ def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
         else:
             files = [path if path.name.endswith(ENDING) else path.with_name(path.name.removesuffix(".rbl") + ENDING)]
             if not files[0].exists():
-                missing = "What the program is expected to do is written into it (docs/testing.md)."
-                yield _unusable(str(path), Fault("RBL701", f"there is no test file {files[0]}", missing))
+                yield _unusable(str(path), _missing(path, files[0]))
                 continue
         if not files and not allow_empty:
             yield _unusable(str(path), Fault("RBL712", f"there is no test file (NAME{ENDING}) in {path}"))
@@ -108,6 +107,16 @@ def _files(paths: list[str], allow_empty: bool) -> Iterator[Path | _Outcome]:
             if file.absolute() not in seen:  # a folder and a file in it may both be named
                 seen.add(file.absolute())
                 yield file
+
+
+def _missing(path: Path, file: Path) -> "Fault":
+    """Return the fault of a path that has no test file."""
+    from runtime.core.faults import Fault
+
+    if not path.suffix and not path.with_name(f"{path.name}.rbl").exists():
+        return Fault("RBL701", f"there is no file or folder {path}", "Check the name and the folder.")
+    missing = "What the program is expected to do is written into it (docs/testing.md)."
+    return Fault("RBL701", f"there is no test file {file}", missing)
 
 
 def _unusable(name: str, fault: "Fault", expected: "Expectation | None" = None) -> _Outcome:

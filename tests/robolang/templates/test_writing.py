@@ -131,6 +131,14 @@ def test_nothing_is_left_where_the_disk_is_full(tmp_path, call, size):
     assert os.listdir(tmp_path) == ["mine"]
 
 
-def test_a_folder_that_is_not_there_is_no_place_for_a_new_one(tmp_path):
-    refused("RBL706", new_project, tmp_path / "none" / "cell1", "pick-place", "puma560")
-    assert list(tmp_path.iterdir()) == []
+def test_folders_above_a_new_one_are_made_with_it(tmp_path):
+    new_project(tmp_path / "jobs" / "line1" / "cell1", "pick-place", "puma560")
+    assert (tmp_path / "jobs" / "line1" / "cell1" / "cell1.rbl").is_file()
+
+
+def test_folders_above_a_new_one_that_cannot_be_written_are_removed(tmp_path):
+    with small_files(300):
+        refused("RBL706", new_project, tmp_path / "jobs" / "line1" / "cell1", "pick-place", "puma560")
+    (tmp_path / "file").write_bytes(b"mine")
+    refused("RBL706", new_project, tmp_path / "file" / "line1" / "cell1", "pick-place", "puma560")
+    assert os.listdir(tmp_path) == ["file"]
