@@ -51,8 +51,9 @@ def load(name: str, shown: str = "<stdin>") -> Loaded:
 def read(name: str) -> "Analysis":
     """Return a program as ``load_project`` takes it, that of the standard input for ``-``; faults as ``load``."""
     from robolang.analysis.analysis import Analysis
+    from robolang.core.source import read_program
 
-    return Analysis(source=load(name).source)
+    return Analysis(source=load(name).source if name == STDIO else read_program(name))
 
 
 def _standard_input() -> bytes:
