@@ -50,7 +50,7 @@ def step(
 ) -> StepResult:
     """Measure the step response of an axis, 2 or ``"J2"``, at a posture in deg; angles of the result are in rad.
 
-``size_mm`` is the step of an axis that slides, with mm in the posture, and m, N and kg in the result.
+    ``size_mm`` is the step of an axis that slides, with mm in the posture, and m, N and kg in the result.
     ``payload`` is carried and ``load`` declared: a mass, kg, or mass and centre of gravity x, y, z mm; None: what is
     carried.
     ``tool``: the tool point in the flange, mm. ``Fault`` RBL703 for an argument, RBL516 where the arm touched
