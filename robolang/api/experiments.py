@@ -2,7 +2,7 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from robolang.experiments.step import PlantName, StepRequest, StepResult
 from robolang.experiments.step import step as step_once
 from robolang.experiments.weigh import WeighRequest, WeighResult
 from robolang.experiments.weigh import weigh as weigh_once
-from robolang.project.arguments import PathLike, Settings, numbers, options_of
+from robolang.project.arguments import Files, PathLike, Settings, numbers, options_of
 from robolang.project.project import load_cell_and_settings, load_settings
 from runtime.core.frames import pose
 from runtime.core.units import DEG, MM
@@ -117,11 +117,7 @@ def compare(
     only: Sequence[str] | None = None,
     physics: bool = True,
     jobs: int = 1,
-    cell: PathLike | None = None,
-    robot: PathLike | None = None,
-    profile: PathLike | None = None,
-    settings: Settings | None = None,
-    servo: ServoMode | None = None,
+    **files: Unpack[Files],
 ) -> Comparison:
     """Run a program with scheduled and fixed gains, right and wrong LOADs, and return a row for each variant.
 
@@ -130,14 +126,9 @@ def compare(
     ``run``.
     """
     variants = _variants(only)
-    options = options_of({"settings": settings, "servo": servo})
+    cell, robot, profile = map(_text, map(files.get, _PATHS))
     request = Request(
-        program=str(program),
-        cell=_text(cell),
-        robot=_text(robot),
-        profile=_text(profile),
-        options=options,
-        physics=physics,
+        program=str(program), cell=cell, robot=robot, profile=profile, options=options_of(files), physics=physics
     )
     first = request.project(variants[0] if variants else VARIANTS[0])
     # before twelve runs, each of which would end in the same refusal
@@ -156,7 +147,10 @@ def _variants(only: Sequence[str] | None) -> tuple[Variant, ...]:
     return tuple(variant for variant in VARIANTS if only is None or variant.name in only)
 
 
-def _text(path: PathLike | None) -> str | None:
+_PATHS = ("cell", "robot", "profile")
+
+
+def _text(path: object) -> str | None:
     return None if path is None else str(path)
 
 
@@ -197,11 +191,7 @@ def weigh(
     payload: PayloadLike | None = None,
     amplitude_deg: float | None = None,
     plant: PlantName = "mujoco",
-    cell: PathLike | None = None,
-    robot: PathLike | None = None,
-    profile: PathLike | None = None,
-    settings: Settings | None = None,
-    servo: ServoMode | None = None,
+    **files: Unpack[Files],
 ) -> WeighResult:
     """Move the arm in the cell of a program and weigh what it carries; without a program in the built-in cell.
 
@@ -209,9 +199,12 @@ def weigh(
     """
     if program is not None:
         read_program(program)  # for its cell: the text alone shows that it is a program
-    options = options_of({"settings": settings, "servo": servo})
     spec, in_force = load_cell_and_settings(
-        None if program is None else Path(program), cell, _text(robot), profile, options
+        None if program is None else Path(program),
+        files.get("cell"),
+        _text(files.get("robot")),
+        files.get("profile"),
+        options_of(files),
     )
     request = WeighRequest(
         cell=spec,

@@ -3,7 +3,7 @@
 import math
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from robolang.analysis.named_lines import stop_of
 from robolang.core import tables
@@ -16,9 +16,8 @@ from robolang.execution.result import RunResult
 from robolang.execution.session import ProgramError, Session
 from robolang.execution.stepping import run_to
 from robolang.planning.line_times import LineTime, line_times
-from robolang.project.arguments import Files, PathLike, Settings
+from robolang.project.arguments import Files, PathLike
 from robolang.project.project import Project
-from runtime.settings.profile import ServoMode
 
 
 def read_project(program: PathLike | Project, files: Files) -> Project:
@@ -61,17 +60,12 @@ def plan(
     program: PathLike | Project,
     *,
     max_time_s: float | None = None,
-    cell: PathLike | None = None,
-    robot: PathLike | None = None,
-    profile: PathLike | None = None,
-    settings: Settings | None = None,
-    servo: ServoMode | None = None,
+    **files: Unpack[Files],
 ) -> Plan:
     """Plan a program without moving anything: does it reach, and how long does it take?
 
     Raises ``ProgramError`` for a text with errors, ``FileFault`` or ``Fault`` for what cannot be used.
     """
-    files = Files(cell=cell, robot=robot, profile=profile, settings=settings, servo=servo)
     read = _runnable(read_project(program, files))
     rehearsal = rehearse(read, most_us=_most_us(max_time_s))
     return Plan(
@@ -92,11 +86,7 @@ def run(
     max_time_s: float | None = None,
     until_line: int | str | None = None,
     observer: Observer | None = None,
-    cell: PathLike | None = None,
-    robot: PathLike | None = None,
-    profile: PathLike | None = None,
-    settings: Settings | None = None,
-    servo: ServoMode | None = None,
+    **files: Unpack[Files],
 ) -> RunResult:
     """Run a program on the controller and the arm, and return its result.
 
@@ -105,24 +95,21 @@ def run(
         physics: whether the arm is that of MuJoCo; False: the ideal one.
         realtime: whether the run keeps to wall time.
         log: whether signals are kept; a folder holds what does not fit in memory. False: the report alone is made.
-        max_time_s: the longest simulated time, s (RBL509); None: 1800 s.
+        max_time_s: the simulated time, s, after which the run ends with RBL509; None: a run of more than 1800 s is
+            refused.
         until_line: the run ends before this line: its number, or a label as ``"*NAME"``.
         observer: sees what happens, when it happens.
-        cell: a cell file in place of the one beside the program.
-        robot: a built-in robot or a robot file in place of the robot of the cell.
-        profile: a profile file of the controller, over the settings of the cell.
-        settings: settings of the controller over both, by their dotted keys.
-        servo: the mode of the servo, over all of them.
+        **files: ``cell``, ``robot``, ``profile``, ``settings`` and ``servo`` replace what the files beside the program
+            say.
 
     Raises ``ProgramError`` when the program has errors or a move cannot be planned, ``FileFault`` or ``Fault`` when a
     file or an argument cannot be used: in all these cases nothing has moved. A fault while running gives ``ok`` False.
     """
-    files = Files(cell=cell, robot=robot, profile=profile, settings=settings, servo=servo)
     read, most_us = _runnable(read_project(program, files)), _most_us(max_time_s)
     # before the planning, which takes its time
     row = None if until_line is None else stop_of(read.analysis, str(until_line))
     plans = PlanMemory(read)
-    refused = rehearse(read, plans=plans, most_us=most_us).preventing
+    refused = rehearse(read, plans=plans, most_us=most_us).preventing_within(most_us)
     if refused:
         raise ProgramError(read, refused, planned=True)
     session = Session(

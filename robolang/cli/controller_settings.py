@@ -25,6 +25,8 @@ def settings_of(group: SettingsOptions) -> Settings:
     for name, _, option, _ in group.options():
         value = getattr(group, name)
         if option.key is not None and value is not None:
+            if not value:
+                raise OptionValueError(option.names[0], "is empty")
             # the choices of an option are texts, and the only number among them is this one
             found[option.key] = (option.names[0], float(value) if option.key == "servo_period_ms" else value)
     return found

@@ -26,3 +26,12 @@ def check_outputs(outputs: Mapping[str, Path | None], inputs: Iterable[Path | st
         taken.add(os.path.realpath(path))
     for path in given.values():
         check_writable(path)
+
+
+def output_beside(read: Path | str, suffix: str) -> Path:
+    """Return the name of an output that is not given: beside what is read, with its name; ``OptionValueError``."""
+    path = Path(read)
+    # '.', '/' and an empty name have no last part that an ending could follow
+    if not path.name:
+        raise OptionValueError("--out", f"'{path}' is a folder without a name of its own; name a file, or give --out")
+    return path.with_name(f"{path.stem}{suffix}")

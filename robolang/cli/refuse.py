@@ -47,10 +47,11 @@ def refuse(
     from robolang.execution.dry_run import rehearse
 
     rehearsal = rehearse(project, plans=plans, most_us=most_us)
-    for item in rehearsal.preventing:
+    preventing = rehearsal.preventing_within(most_us)
+    for item in preventing:
         show_finding(render(item, project.source))
-    if rehearsal.preventing:
-        raise SystemExit(exit_code(rehearsal.preventing[0].code))
+    if preventing:
+        raise SystemExit(exit_code(preventing[0].code))
     # counted although not printed: --strict needs them with --quiet too
     unlikely = bool(project.cell.warnings)
     return Accepted(

@@ -9,7 +9,18 @@ import numbers
 import os
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from types import NoneType, UnionType
-from typing import TYPE_CHECKING, Any, Literal, NoReturn, ParamSpec, TypeVar, Union, get_args, get_origin
+from typing import (
+    TYPE_CHECKING,
+    Any,
+    Literal,
+    NoReturn,
+    ParamSpec,
+    TypeVar,
+    Union,
+    get_args,
+    get_origin,
+    get_type_hints,
+)
 
 import robolang.core.codes  # noqa: F401 - the codes raised here must be registered
 from runtime.core.faults import Fault
@@ -63,7 +74,18 @@ def _check(function: Callable[..., Any], args: tuple[Any, ...], named: Mapping[s
 def _signature(function: Callable[..., Any]) -> "Signature":
     import inspect  # a check of a program imports this module, and calls nothing of it
 
-    return inspect.signature(function, eval_str=True)
+    found = inspect.signature(function, eval_str=True)
+    parameters: list[inspect.Parameter] = []
+    for each in found.parameters.values():
+        if each.kind is each.VAR_KEYWORD:  # annotated as what a TypedDict has
+            (table,) = get_args(each.annotation)
+            parameters += [
+                inspect.Parameter(name, each.KEYWORD_ONLY, default=None, annotation=hint)
+                for name, hint in get_type_hints(table).items()
+            ]
+        else:
+            parameters.append(each)
+    return found.replace(parameters=parameters)
 
 
 def _nearest(word: str, choices: Sequence[str]) -> str:

@@ -115,6 +115,13 @@ class Rehearsal:
         """What keeps the program from being started: RBL3xx, RBL4xx, and loops and runs without an end."""
         return tuple(item for item in self.refused if lookup(item.code).prevents_run)
 
+    def preventing_within(self, most_us: int | None) -> tuple[Diagnostic, ...]:
+        """What keeps a run of at most ``most_us`` from being started; None: of the usual time.
+
+        One that is longer than somebody chose to wait is run up to there, an endless one as well (RBL509).
+        """
+        return tuple(item for item in self.preventing if most_us is None or item.code != "RBL509")
+
 
 def motion_check(project: Project, plans: PlanMemory | None = None) -> tuple[Diagnostic, ...]:
     """Return what keeps a checked program from being started: RBL3xx, RBL4xx, and loops and runs without an end.

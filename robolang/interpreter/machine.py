@@ -371,7 +371,7 @@ class Machine:
             message += f": this loop has gone round {rounds} times"
             hint = "Give the loop an end that a simulation reaches: a count of rounds, TIMER, or an input of the cell."
         else:
-            hint = "Split the program, or shorten its DELAYs; the log and the report end here."
+            hint = "Give the run more time, split the program, or shorten its DELAYs; log and report end here."
         return ProgramFault(Fault("RBL509", message, hint), running)
 
 

@@ -134,14 +134,19 @@ def _arm_alone(cell: Path | None, robot: str | None, files: CellFiles) -> ArmFil
     return None if cell is None or robot is not None else read_arm_alone(cell, files.typed(cell))
 
 
+def _sibling(program: Path, ending: str) -> Path:
+    # not with_suffix, which fails for a program without a name, such as '': reading it says what is wrong
+    return program.parent / f"{program.stem}{ending}"
+
+
 def own_cell(program: Path) -> Path:
     """Return where the cell file of a program alone stands, or would."""
-    return program.with_suffix(".cell.toml")
+    return _sibling(program, ".cell.toml")
 
 
 def cell_beside(program: Path, files: CellFiles | None = None) -> Path | None:
     """Return the cell file of a program; None when it has none and runs in the built-in cell."""
-    for candidate in (own_cell(program), program.with_name("cell.toml")):
+    for candidate in (own_cell(program), program.parent / "cell.toml"):
         if (files or CellFiles()).has(candidate):
             return candidate
     return None
@@ -149,7 +154,7 @@ def cell_beside(program: Path, files: CellFiles | None = None) -> Path | None:
 
 def points_file(program: Path) -> Path:
     """Return where the taught points of a program stand, or would."""
-    return program.with_suffix(".points.toml")
+    return _sibling(program, ".points.toml")
 
 
 def taught_points(

@@ -7,7 +7,7 @@ hand, a table and a part, with P1 to P5 taught (docs/language.md).
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, Unpack
 
 from robolang.analysis.analysis import Analysis
 from robolang.core.calls import checked, refuse
@@ -56,22 +56,13 @@ class Project:
 
     @classmethod
     @checked
-    def load(
-        cls,
-        program: PathLike,
-        *,
-        cell: PathLike | None = None,
-        robot: PathLike | None = None,
-        profile: PathLike | None = None,
-        settings: Mapping[str, Any] | None = None,
-        servo: ServoMode | None = None,
-    ) -> "Project":
+    def load(cls, program: PathLike, **files: Unpack[Files]) -> "Project":
         """Read a program and the files beside it, or those that are named.
 
         Raises ``FileFault`` or ``Fault`` for a file or an argument that cannot be used; errors of the program itself
         are in ``diagnostics``.
         """
-        return _given(program, cell, Files(robot=robot, profile=profile, settings=settings, servo=servo))
+        return _given(program, files.get("cell"), files)
 
     @classmethod
     @checked
@@ -81,11 +72,7 @@ class Project:
         *,
         points: Mapping[str, Sequence[float]] | None = None,
         name: str = "program.rbl",
-        cell: str | None = None,
-        robot: PathLike | None = None,
-        profile: PathLike | None = None,
-        settings: Mapping[str, Any] | None = None,
-        servo: ServoMode | None = None,
+        **files: Unpack[Files],
     ) -> "Project":
         """Return the project of a text; nothing of it need be on the disk.
 
@@ -93,9 +80,9 @@ class Project:
         ``cell`` is the text of a cell file here; None: the built-in cell. ``name`` stands in messages. Raises as
         ``load``.
         """
-        if cell is not None and cell.endswith(".toml") and "\n" not in cell:
-            refuse("cell", f"the text of a cell file is needed, but {cell!r} is a path", _READ)
-        where = Path(name)
+        where, cell = Path(name), files.get("cell")
+        if isinstance(cell, Path) or (cell is not None and cell.endswith(".toml") and "\n" not in cell):
+            refuse("cell", f"the text of a cell file is needed, but {str(cell)!r} is a path", _READ)
         texts = {
             discovery.points_file(where): None if points is None else points_text(points),
             discovery.own_cell(where): cell,
@@ -103,7 +90,7 @@ class Project:
             where.with_name("cell.toml"): None,
         }
         typed = Typed(analysis=Analysis(source=Source(name, text)), texts=texts)
-        return _given(typed, None, Files(robot=robot, profile=profile, settings=settings, servo=servo))
+        return _given(typed, None, files)
 
     @property
     def source(self) -> Source:

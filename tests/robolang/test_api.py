@@ -108,9 +108,11 @@ def test_options_of_the_command_are_arguments(folder):
     short = robolang.run("p.rbl", physics=False, until_line=20)
     assert [each.number for each in short.report.statements] == [10]
     assert not short.log["line"][-1] > 1
-    with pytest.raises(robolang.ProgramError) as caught:
-        robolang.run("p.rbl", physics=False, max_time_s=0.5)
-    assert [item.code for item in caught.value.diagnostics] == ["RBL509"]
+    cut = robolang.run("p.rbl", physics=False, max_time_s=0.5)
+    assert not cut.ok
+    assert [item.code for item in cut.alarms] == ["RBL509"]
+    assert cut.report.sim_time_s >= 0.5
+    assert [item.code for item in robolang.plan("p.rbl", max_time_s=0.5).refused] == ["RBL509"]
 
 
 def refusals():

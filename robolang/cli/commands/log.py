@@ -16,7 +16,7 @@ from robolang.cli.command import PlainCommand, command
 from robolang.cli.errors import reported
 from robolang.cli.options import Group, JsonOptions, Option, Run
 from robolang.cli.output import echo
-from robolang.cli.outputs import check_outputs
+from robolang.cli.outputs import check_outputs, output_beside
 from robolang.cli.usage import OptionValueError
 from robolang.core.diagnostics import safe
 
@@ -76,7 +76,7 @@ def export(run: Run, output: _ExportOptions) -> None:
     Exit codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the file cannot be written.
     """
     suffix = _suffix(output)
-    path = output.out or run.with_suffix(suffix)
+    path = output.out or output_beside(run, suffix)
     with reported():
         from robolang.core.storage import write_atomic
         from robolang.logs.files import read_log

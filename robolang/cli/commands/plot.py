@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from robolang.cli.errors import reported
 from robolang.cli.options import Argument, Group, Option, Run
 from robolang.cli.output import echo
-from robolang.cli.outputs import check_outputs
+from robolang.cli.outputs import check_outputs, output_beside
 from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
@@ -90,4 +90,4 @@ def _drawn(found: "SignalPlot", suffix: str) -> bytes:
 def _beside(run: Path, selections: list[str]) -> Path:
     # names of signals have a colon, which file systems do not all take
     name = "-".join(text.replace(" ", "").replace(":", "").replace("+", "-") for text in selections)
-    return run.with_name(f"{run.stem}-{name}.svg".replace("/", "_"))
+    return output_beside(run, f"-{name}.svg".replace("/", "_"))

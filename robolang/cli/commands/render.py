@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, ClassVar
 from robolang.cli.errors import MOTION, reported
 from robolang.cli.options import Argument, CellOptions, Group, Option, PhysicsOptions
 from robolang.cli.output import echo
-from robolang.cli.outputs import check_outputs
+from robolang.cli.outputs import check_outputs, output_beside
 from robolang.cli.usage import OptionValueError
 
 if TYPE_CHECKING:
@@ -59,7 +59,7 @@ def render(subject: Subject, files: CellOptions, picture: _PictureOptions, physi
     Exit codes: 0 done, also if the run of the program ended with an alarm, which is then 3; 1 the program has errors; 2
     a file or an option cannot be used, or nothing can draw; 4 the file cannot be written.
     """
-    out = picture.out if picture.out is not None else Path(subject).with_suffix(".png")
+    out = picture.out if picture.out is not None else output_beside(subject, ".png")
     if out.suffix in (".rbl", ".toml", ".npz"):
         raise OptionValueError("--out", f"'{out}' would be a program, a cell or a log; name a picture")
     if picture.fps is not None and out.suffix == ".png":

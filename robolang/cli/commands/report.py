@@ -9,7 +9,7 @@ from typing import Annotated, ClassVar
 from robolang.cli.errors import reported
 from robolang.cli.options import Argument, Group, Option
 from robolang.cli.output import echo
-from robolang.cli.outputs import check_outputs
+from robolang.cli.outputs import check_outputs, output_beside
 from robolang.cli.usage import OptionValueError
 
 Run = Annotated[str, Argument("RUN", "Log of a run (.npz or .mcap).")]
@@ -38,7 +38,7 @@ def report(run: Run, other: OtherRun, page: PageOptions) -> None:
     """
     with reported():
         paths = [Path(path) for path in (run, other) if path is not None]
-        out = page.out if page.out is not None else paths[0].with_suffix(".html")
+        out = page.out if page.out is not None else output_beside(paths[0], ".html")
         labels = _labels(paths, page.label)
         _check_output(out, paths)
         from robolang.view.page import Bundle, write_page

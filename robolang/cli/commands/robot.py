@@ -111,8 +111,9 @@ def import_model(file: _Model, options: _SidecarOptions) -> None:
         from runtime.robot.files.sidecar import template
         from runtime.robot.files.sidecar_file import NO_OVERLAY, read_sidecar, sidecar_path
 
-        target = options.output if options.output is not None else sidecar_path(file)
+        # read first: what is no file has no name for a sidecar
         arm = read_model(file, replace(NO_OVERLAY, flange=options.flange))
+        target = options.output if options.output is not None else sidecar_path(file)
         say_warnings(arm.warnings)
         say_notes(arm.notes)
         estimates = estimate(known_of(arm)) if options.estimate else {}

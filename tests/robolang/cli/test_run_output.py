@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 from robolang.cli import run_table
 from robolang.cli.main import app
+from robolang.logs.files import read_log
 from tests.campaign import some
 from tests.messages import fields, heads
 from tests.robolang.cli.commands import ROOT, dry, flat, robolang, shell
@@ -217,7 +218,20 @@ def test_a_run_has_at_most_its_time(program, monkeypatch):
     program.write_text("DELAY 0.5\n")
     assert "RBL509" in dry("p.rbl", code=3).stderr
     assert last_word(dry("p.rbl", "--max-time", "0.6").stdout) == "OK"
-    assert "RBL509" in dry("p.rbl", "--max-time", "0.3", code=3).stderr
+
+
+@pytest.mark.parametrize("text", ["10 MOVE P1\n20 MOVE P5\n", "WHILE TRUE\nDELAY 0.2\nWEND\n"])
+def test_a_run_with_a_time_ends_then_and_is_recorded(program, text):
+    program.write_text(text.replace("TRUE", "1 = 1"))
+    ran = dry("p.rbl", "--max-time", "0.3", "--log", "p.npz", "--report", "p.json", code=3)
+    assert "RBL509" in ran.stderr
+    assert last_word(ran.stdout) == "FAILED"
+    report = json.loads((program.parent / "p.json").read_text())
+    assert [alarm["code"] for alarm in report["alarms"]] == ["RBL509"]
+    log = read_log(program.parent / "p.npz")
+    # it ends on the path, so the last cycles come after that time
+    assert report["sim_time_s"] >= 0.3
+    assert log["t"][-1] + 0.001 == pytest.approx(report["sim_time_s"])
 
 
 def test_words_of_other_people_are_printed_and_not_obeyed(tmp_path, monkeypatch):
