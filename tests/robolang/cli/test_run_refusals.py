@@ -220,7 +220,8 @@ def test_a_program_is_never_overwritten_by_its_own_log(folder):
     (folder / "p.npz").write_text("MOVE P1\n")
     (folder / "link.npz").symlink_to("p.npz")
     for name in ("p.npz", "link.npz"):
-        assert {"RBL703", "--log", name} <= fields(flat(dry("p.npz", "--log", name, code=2).stderr))
+        # what has the name of a log is no program, whatever is in it
+        assert {"RBL702", "p.npz"} <= fields(flat(dry("p.npz", "--log", name, code=2).stderr))
     assert (folder / "p.npz").read_text() == "MOVE P1\n"
 
 
