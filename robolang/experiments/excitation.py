@@ -14,7 +14,6 @@ from typing import Literal
 import numpy as np
 
 from robolang.project.project import builtin_cell
-from robolang.project.turning import only_turning
 from runtime.cell.cell import CellSpec
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
@@ -114,11 +113,20 @@ class Grid:
 def plan(request: Request, payload: Payload, axis: int) -> Test:
     """Return the test motions of an axis; ``Fault`` RBL420 when they would leave a limit of the robot."""
     spec = request.robot
-    only_turning(spec, "an identification", "its motions and its file are in deg and kg m2")
+    _refuse_slides(spec)
     if not 0 <= axis < spec.n:
         raise Fault("RBL420", f"{spec.name} has the axes 1 to {spec.n}, no J{axis + 1}")
     model = _loaded(spec, payload)
     return _planned(request, model, axis, *posture(spec, model, axis, folds(request)), request.positions)
+
+
+def _refuse_slides(spec: RobotSpec) -> None:
+    """Refuse an arm with an axis that slides; ``Fault`` RBL703."""
+    for number, axis in enumerate(spec.axes, 1):
+        if axis.kind.slides:
+            message = f"J{number} of {spec.name} slides, and an identification is for arms whose axes all turn"
+            why = "its test motions and its file are in deg and kg m2"
+            raise Fault("RBL703", f"{message}: {why}", "Take an arm whose axes all turn.")
 
 
 def bench(request: Request) -> CellSpec:

@@ -341,7 +341,7 @@ def as_json(request: WeighRequest, result: WeighResult) -> dict[str, Any]:
     robot = request.cell.robot
     found, true = result.found, result.true
     load = load_statement(found, robot.rated_payload)
-    cog, sd = (None if x is None else [float(v) / MM for v in x] for x in (found.cog, found.cog_sd))
+    cog, sd = (None if x is None else (x / MM).tolist() for x in (found.cog, found.cog_sd))
     return {
         "robot": robot.name,
         "plant": request.plant,

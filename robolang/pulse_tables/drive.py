@@ -25,9 +25,10 @@ from runtime.core.linear import norm
 from runtime.core.program_line import ProgramLine
 from runtime.core.rounding import beside
 from runtime.core.units import MM
-from runtime.pulses.exported import Export, Load, Marker, Move
+from runtime.pulses.exported import Export, Load, Marker, Mechanism, Move
 from runtime.pulses.replay import distances, joint_values, positions
 from runtime.robot.model.payload import Payload, declared
+from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 
 SAME = 1e-9
@@ -95,6 +96,7 @@ def start_angles(export: Export, cell: CellSpec) -> Array:
         raise Fault("RBL634", f"the tables are for a {mechanism.kind} mechanism; the cell has the arm {robot.name}")
     if len(mechanism.placements) != robot.n:
         raise Fault("RBL634", f"the tables are for {len(mechanism.placements)} axes; {robot.name} has {robot.n}")
+    _check_kinds(mechanism, robot)
     pairs = [
         (f"the frame of J{k}", ours, axis.placement)
         for k, (ours, axis) in enumerate(zip(mechanism.placements, robot.axes, strict=True), start=1)
@@ -116,6 +118,14 @@ def start_angles(export: Export, cell: CellSpec) -> Array:
             at, ends = kind.text(float(q), ".3f"), f"{low / kind.size:g} to {high / kind.size:g}"
             raise Fault("RBL634", f"J{number} starts at {at}; its range is {ends}")
     return frozen(start)
+
+
+def _check_kinds(mechanism: Mechanism, robot: RobotSpec) -> None:
+    """Refuse tables in which an axis turns that slides in the cell, or slides that turns there; ``Fault`` RBL634."""
+    for k, axis in enumerate(robot.axes):
+        if axis.kind.slides != (k in mechanism.sliding):
+            does = "slides" if k in mechanism.sliding else "turns"
+            raise Fault("RBL634", f"J{k + 1} of the tables {does}; J{k + 1} of {robot.name} {axis.kind.moves}")
 
 
 def _payload(load: Load, cell: CellSpec) -> Payload:

@@ -15,7 +15,6 @@ import numpy as np
 
 from robolang.interpreter.effects import MoveTo
 from robolang.project.project import Project
-from robolang.project.turning import only_turning
 from robolang.pulse_tables.table_target import (
     HandMarker,
     LoadMarker,
@@ -125,7 +124,6 @@ def equipment(project: Project, request: ExportRequest) -> tuple[Machine, tuple[
                 f"the robot of the cell, {cell.robot.name}",
                 key="mechanism",
             )
-        only_turning(cell.robot, "an export of pulses", "its tables are in deg")
         machine = RobotArm(cell.robot, project.profile, cell.hand.X_flange_tool, cell.home)
         pulse = tuple(motor_pulse(axis.motor.gear_ratio) for axis in cell.robot.axes)
     if file is None:

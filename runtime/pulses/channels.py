@@ -129,5 +129,5 @@ def _channel(row: Table, joint: Joint, pulse: float, min_hz: float | None) -> Ch
 
 
 def motor_pulse(gear_ratio: float) -> float:
-    """Return rad of a joint per pulse of its motor, by ``PULSES_PER_TURN`` and the gear ratio."""
+    """Return rad (m of a joint that slides) per pulse of its motor, by ``PULSES_PER_TURN`` and the gear ratio."""
     return 2.0 * math.pi / (PULSES_PER_TURN * abs(gear_ratio))

@@ -30,7 +30,8 @@ class Mechanism:
     """The mechanism that the channels move; ``axes`` are its joints, J1, J2, ... of an arm.
 
     ``placements`` (4, 4) of each axis of an arm in the frame before it, then ``X_last_flange`` and ``X_flange_tool``
-    (4, 4), m. ``constant`` (3,) m: the coordinates that no joint moves. ``lengths``: l1 and l2 of a scara, m.
+    (4, 4), m; ``sliding`` are the indices of the axes of an arm that slide along z. ``constant`` (3,) m: coordinates
+    that no joint moves. ``lengths``: l1 and l2 of a scara, m.
     """
 
     kind: Kind
@@ -39,13 +40,14 @@ class Mechanism:
     placements: tuple[Array, ...] = ()
     X_last_flange: Array = field(default_factory=lambda: frozen(np.eye(4)))
     X_flange_tool: Array = field(default_factory=lambda: frozen(np.eye(4)))
+    sliding: frozenset[int] = frozenset()
     constant: Array = field(default_factory=lambda: frozen(np.zeros(3)))
     lengths: tuple[float, float] = (0.0, 0.0)
 
     @property
     def units(self) -> tuple[Unit, ...]:
         """Unit of each joint."""
-        return tuple("mm" if axis in "xyzr" else "deg" for axis in self.axes)
+        return tuple("mm" if axis in "xyzr" or k in self.sliding else "deg" for k, axis in enumerate(self.axes))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

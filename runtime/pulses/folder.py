@@ -93,11 +93,13 @@ def _mechanism(table: Object) -> Mechanism:
         placements = table.poses("placements")
         if not placements:
             table.fail("placements", "has no axis")
+        axes = tuple(f"J{k}" for k in range(1, len(placements) + 1))
         return Mechanism(
             kind=kind,
             name=name,
-            axes=tuple(f"J{k}" for k in range(1, len(placements) + 1)),
+            axes=axes,
             placements=placements,
+            sliding=_sliding(table, axes),
             X_last_flange=table.pose("X_last_flange"),
             X_flange_tool=table.pose("X_flange_tool"),
         )
@@ -107,6 +109,16 @@ def _mechanism(table: Object) -> Mechanism:
     constant = [0.0 if axis in moved else table.number(f"{axis}_mm") * MM for axis in "xyz"]
     lengths = (table.number("l1_mm") * MM, table.number("l2_mm") * MM) if kind == "scara" else (0.0, 0.0)
     return Mechanism(kind=kind, name=name, axes=axes, constant=frozen(constant), lengths=lengths)
+
+
+def _sliding(table: Object, axes: tuple[str, ...]) -> frozenset[int]:
+    """Return the indices of the axes of an arm that slide; none without the key, as in tables of arms that turn."""
+    names = table.entries("slides") if "slides" in table else []
+    for name in names:
+        if name not in axes or names.count(name) > 1:
+            shown = quoted(name) if isinstance(name, str) else type_name(name)
+            table.fail("slides", f"names {shown}; each is one of {', '.join(axes)}, once")
+    return frozenset(axes.index(name) for name in names)
 
 
 def _axes(table: Object, kind: Kind) -> tuple[str, ...]:

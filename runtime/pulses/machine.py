@@ -113,7 +113,7 @@ class ArmCurve:
 
 
 class RobotArm:
-    """A robot of the library with a tool; ``home`` (n,) rad."""
+    """A robot of the library with a tool; ``home`` (n,) rad, m of an axis that slides."""
 
     def __init__(self, spec: RobotSpec, profile: Profile, X_flange_tool: Array, home: Array) -> None:
         self._spec, self._X_flange_tool = spec, X_flange_tool
@@ -125,7 +125,7 @@ class RobotArm:
         self.joints = tuple(
             Joint(
                 name=f"J{number}",
-                rotary=True,
+                rotary=not axis.kind.slides,
                 lower=axis.limits.lower,
                 upper=axis.limits.upper,
                 speed=axis.limits.speed,
@@ -158,9 +158,11 @@ class RobotArm:
 
     def described(self) -> dict[str, Any]:
         """Return the chain of axes, by which a reader computes its own kinematics."""
+        slides = [joint.name for joint in self.joints if not joint.rotary]
         return {
             "kind": "arm",
             "name": self.name,
+            **({"slides": slides} if slides else {}),
             "placements": [axis.placement.tolist() for axis in self._spec.axes],
             "X_last_flange": self._spec.X_last_flange.tolist(),
             "X_flange_tool": self._X_flange_tool.tolist(),

@@ -7,6 +7,8 @@ the check shares no code with the exporter, and the path error is measured at th
     joint     = pulses x pulse equivalent
     tool      = prod_i( placement_i Rz(q_i) ) X_last_flange X_flange_tool          of an arm; of others, their equations
 
+An axis of an arm that slides has Tz(q_i), m.
+
 Nothing is checked here: what ``runtime.pulses.folder.read_export`` returns can be played. Called by
 'robolang replay-pulses'.
 """
@@ -102,15 +104,19 @@ def tool_points(export: Export, pulses: Array) -> Array:
 
 
 def _arm_points(mechanism: Mechanism, q: Array) -> Array:
-    """Take the tool point from the last frame to the world, joint by joint: q (K, n) rad -> (K, 3) m."""
+    """Take the tool point from the last frame to the world, joint by joint: q (K, n) rad or m -> (K, 3) m."""
     tool = matmul(mechanism.X_last_flange, mechanism.X_flange_tool)[:3, 3]
     points = np.tile(tool, (len(q), 1))
     # from the tool inwards: one vector a joint to turn instead of a matrix to multiply
-    for placement, angle in reversed(list(zip(mechanism.placements, q.T, strict=True))):
-        c, s = np.cos(angle), np.sin(angle)
+    for axis in reversed(range(len(mechanism.placements))):
+        placement, at = mechanism.placements[axis], q[:, axis]
         x, y, z = points.T
-        turned = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
-        points = matmul(turned, placement[:3, :3].T) + placement[:3, 3]
+        if axis in mechanism.sliding:
+            moved = np.stack([x, y, z + at], axis=-1)
+        else:
+            c, s = np.cos(at), np.sin(at)
+            moved = np.stack([c * x - s * y, s * x + c * y, z], axis=-1)
+        points = matmul(moved, placement[:3, :3].T) + placement[:3, 3]
     return points
 
 
