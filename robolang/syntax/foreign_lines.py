@@ -4,6 +4,7 @@ A statement is proposed only where the reader of this language takes it, and as 
 """
 
 import re
+from dataclasses import replace
 
 from robolang.syntax.foreign.readings import LOST, filled
 from robolang.syntax.foreign.shape import Shape
@@ -17,6 +18,11 @@ MOST = 160
 """Characters of a line that is still compared with the shapes: what is longer is no statement by hand."""
 BEFORE = re.compile(r"[ \t]*(?:\*\w+(?=[ \t]+\S)|:)?")
 """What stands before a line: a label of this language, or the colon after the number of a line of TP."""
+_REMARK = re.compile(
+    r"[ \t]*;[ \t]*+(?!!|//)(?P<after>[^;]*)\Z|(?:[ \t]*;[ \t]*!|[ \t]+(?://|#|!|--)(?=[ \t]))[ \t]*(?P<text>.*)\Z"
+)
+"""A comment after a line: of RAPID after ; and !, of others after a sign with blanks; what stands after ; alone."""
+_PRINT = re.compile(r"(?i)[ \t]*PRINT\b")
 _END = re.compile(r"[ \t]*;?[ \t]*\Z")
 
 
@@ -43,6 +49,18 @@ def proposal(code: str) -> Proposal | None:
     before = BEFORE.match(code)
     # JMP LBL[1]; of TP and RAPID: no sign ends a line here
     text = _END.sub("", code[before.end() :] if before else code, count=1)
+    # of PRINT of this language ; stands between values
+    remark = None if _PRINT.match(text) else _REMARK.search(text)
+    # a quote that is open there: the sign stands in a text
+    if remark and remark.start() and text[: remark.start()].count('"') % 2 == 0:
+        found = _proposed(text[: remark.start()])
+        if found:
+            return _with_remark(found, remark)
+    return _proposed(text)
+
+
+def _proposed(text: str) -> Proposal | None:
+    """Return what to write for a line without a sign at its end and without a comment."""
     first = FIRST.match(text)
     if first is None:
         return None
@@ -60,6 +78,17 @@ def proposal(code: str) -> Proposal | None:
                 shape=shape, statements=shown, note=f"{_NUMBERED}; {note}".rstrip("; ") if numbered else note
             )
     return None
+
+
+def _with_remark(found: Proposal, remark: "re.Match[str]") -> Proposal:
+    """Return a proposal with the comment of the line, or with what stands after a ; as left out."""
+    text = (remark["after"] or remark["text"] or "").strip()
+    # after ; RAPID may have another statement, and KRL has a comment
+    if text and remark["text"] is None:
+        note = f"{found.note}, {text}" if "left out: " in found.note else f"{found.note}; left out: {text}".lstrip("; ")
+        return replace(found, note=note)
+    *some, last = found.statements or ("",)
+    return replace(found, statements=(*some, f"{last} ' {text}")) if text and last else found
 
 
 def _noted(shape: Shape, words: dict[str, str | None], lost: str) -> str:

@@ -53,6 +53,18 @@ _SETTINGS = (
 # numbers of tools, frames and loads become names: a cell has no numbered ones
 _TOOLS_AND_LOADS = (
     Shape((KRL,), "$TOOL=TOOL_DATA[1]", r" = TOOL_DATA \[ <n> \]", "TOOL tool{n}", _TOOLS),
+    Shape(
+        (KRL,),
+        "$TOOL={X 0,Y 0,Z 150,A 0,B 0,C 0}",
+        r" = \{ X <num1> , Y <num2> , Z <num3> , A <num4> , B <num5> , C <num6> \}",
+        "TOOL POSE({num1}, {num2}, {num3}, {num6}, {num5}, {num4})",
+    ),
+    Shape(
+        (KRL,),
+        "$BASE={X 400,Y 0,Z 0,A 90,B 0,C 0}",
+        r" = \{ X <num1> , Y <num2> , Z <num3> , A <num4> , B <num5> , C <num6> \}",
+        "FRAME POSE({num1}, {num2}, {num3}, {num6}, {num5}, {num4})",
+    ),
     Shape((KRL,), "$BASE=BASE_DATA[2]", r" = BASE_DATA \[ <n> \]", "FRAME frame{n}", _FRAMES),
     Shape((AS, VPLUS), "BASE NULL", r" NULL", "FRAME WORLD"),
     Shape((KRL,), "$BASE=$NULLFRAME", r" = \$(?:NULLFRAME|WORLD)", "FRAME WORLD"),
@@ -160,6 +172,13 @@ _WAITS = (
         "$WAITTMOUT says how many s",
     ),
     Shape((INFORM,), "WAIT IN#(1)=ON T=5.0", r" <condition> T = <s>", "WAIT {condition}, TIMEOUT {s}"),
+    Shape(
+        (PAC,),
+        "Wait IO[1] = On, 3000",
+        r" (?=IO )<condition> , <ms>",
+        "WAIT {condition}, TIMEOUT {ms}",
+        "TIMEOUT is in s",
+    ),
     Shape((INFORM, TP, PAC, MELFA), "WAIT IN#(1)=ON", r" <condition>", "WAIT {condition}"),
     Shape((RAPID,), "WaitTime 0.5;", r"(?: <switch> ,)? <s>", "DELAY {s}"),
     Shape(

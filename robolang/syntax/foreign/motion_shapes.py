@@ -199,6 +199,13 @@ _KAREL = (
     Shape(
         (KAREL,), "MOVE NEAR p1 BY 100", r" NEAR <point> BY <num>", "APPROACH {point}, {num}", "where $MOTYPE is LINEAR"
     ),
+    Shape(
+        (KAREL,),
+        "MOVE RELATIVE VEC(0,0,100)",
+        r" RELATIVE VEC \( <mm> \)",
+        "MOVE HERE + ({mm})",
+        "where $MOTYPE is LINEAR",
+    ),
     Shape((KAREL,), "MOVE AWAY 50", r" AWAY <num>", "DEPART {num}", "where $MOTYPE is LINEAR"),
     Shape(
         (KAREL,),
@@ -299,6 +306,7 @@ _PAC = (
     Shape((PAC,), "Move P, @P P1, S=50", r" P , (?:<pass> )?<point> , S = <pct>", "MOVEJ {point}{pct}", _PASS),
     Shape((PAC,), "Move P, @P P1", r" P , (?:<pass> )?<point><more>", "MOVEJ {point}", _PASS),
     Shape((PAC,), "Move L, @E P2, S=50", r" L , (?:<pass> )?<point> , <lost>", "MOVE {point}", f"{_PASS}; {_SPEED}"),
+    Shape((PAC,), "Move L, P1 + P(0,0,50)", r" L , <point> \+ P? \( <mm> \)<more>", "MOVE {point} + ({mm})"),
     Shape((PAC,), "Move L, @P P2", r" L , (?:<pass> )?<point>", "MOVE {point}", _PASS),
     Shape(
         (PAC,), "Move C, P1, @P P2", r" C , <point1> , (?:<pass> )?<point2><more>", "MOVEC {point1}, {point2}", _PASS

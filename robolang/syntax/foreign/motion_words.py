@@ -170,6 +170,8 @@ CELL = (
     Entry("LOADSET", (MELFA,), PAYLOAD, "LOAD load1", note="the cell file names loads: [loads.load1]"),
     Entry("LOADDATA", (RAPID,), "holds a payload", _LOAD),
     Entry("SET_PAYLOAD SET_TARGET_PAYLOAD", (UR,), PAYLOAD, _LOAD),
+    Entry("SET_PAYLOAD_MASS SET_PAYLOAD_COG", (UR,), "declares a part of the payload", _LOAD, "LOAD has all of it"),
+    Entry("SET_GRAVITY", (UR,), "sets the direction of gravity", missing=True),
     Entry("WEIGHT", (AS,), PAYLOAD, _LOAD),
     Entry("SETLOAD", (OTHERS,), PAYLOAD, _LOAD),
     Entry("HOPEN", (MELFA,), OPENS, "HAND OFF"),

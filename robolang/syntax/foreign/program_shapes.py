@@ -5,6 +5,7 @@ from robolang.syntax.foreign.shape import ANY, Shape
 
 _MAIN = "the main program has no head, it is what stands in no SUB"
 _HEAD = "or remove the line: a main program has no head"
+_NAME = "a register is a name; DIM a(n) makes an array"
 _ENDED = "ENDSELECT ends it"
 _PLACES = "a program is a file, and taught points are in another one beside it"
 
@@ -47,7 +48,9 @@ _SUBS = (
     Shape((MELFA,), 'CallP "SUB1"', r' "<name>"', "CALL {name}"),
     Shape((MELFA,), 'CallP "SUB1",M1', r' "<name>" , <arguments>', "CALL {name}({arguments})"),
     Shape((TP,), "CALL PICK_PART;", r" <name>", "CALL {name}", "no ; ends a line"),
-    Shape((TP,), "CALL PICK_PART(1,2);", r" <name> \( <arguments> \)", "CALL {name}({arguments})", "no ; ends a line"),
+    Shape((TP,), "CALL PICK_PART(1,2);", r" <name> \( <arguments> \)", "CALL {name}({arguments})"),
+    Shape((KAREL,), "CALL_PROG('PICK', status)", r" \( '<name>' (?:, <among> )?\)", "CALL {name}"),
+    Shape((INFORM,), "CALL JOB:SUB1 ARGF1", r" JOB : <name> ARGF <arguments>", "CALL {name}({arguments})"),
 )
 _JUMPS = (
     Shape((TP,), "JMP LBL[1]", r" LBL \[ <n>(?: :.*)? \]", "GOTO *L{n}"),
@@ -120,7 +123,9 @@ _BLOCKS = (
         "FOR {name} = {num1} TO {num2} STEP {num3}",
     ),
     Shape((AS, VPLUS), "VALUE 1:", r" <values> :", "CASE {values}"),
-    Shape((RAPID,), "FOR i FROM 1 TO 10 DO", r" <name> FROM <num1> TO <num2> DO", "FOR {name} = {num1} TO {num2}"),
+    Shape(
+        (RAPID,), "FOR i FROM 1 TO 10 DO", r" <name> FROM <bound1> TO <bound2> DO", "FOR {name} = {bound1} TO {bound2}"
+    ),
     Shape((KAREL, AS), "FOR i = 1 TO 10 DO", r" <name> = <num1> TO <num2> DO", "FOR {name} = {num1} TO {num2}"),
     Shape((TP,), "FOR R[1]=1 TO 10", r" <point> = <num1> TO <num2>", "FOR {point} = {num1} TO {num2}"),
     Shape((KRL, VAL3), "SWITCH n", r" \(? <name> \)?", "SELECT {name}"),
@@ -210,8 +215,8 @@ _DATA = (
     Shape((RAPID,), "VAR num x := 5;", r" \w+ <name> := <rest>", "{name} = {rest}", words="VAR PERS CONST LOCAL"),
     Shape((KRL,), "DECL INT x = 5", r" \w+ <name> = <num>", "{name} = {num}"),
     Shape((UR,), "global x = 5", r" <name> = <rest>", "{name} = {rest}", words="GLOBAL LOCAL LET INT NUM"),
-    Shape((TP,), "F[1]=(ON)", r" \[ <n>(?: :[^\]]*)? \] = \(? <state> \)?", "F{n} = {state}"),
-    Shape((PAC,), "I[1] = I[1] + 1", r" \[ <n> \] = <registers>", "{word}{n} = {registers}", words="I F D"),
+    Shape((TP,), "F[1]=(ON)", r" \[ <n>(?: :[^\]]*)? \] = \(? <state> \)?", "F{n} = {state}", _NAME),
+    Shape((PAC,), "I[1] = I[1] + 1", r" \[ <n> \] = <registers>", "{word}{n} = {registers}", _NAME, "I F D"),
     Shape((TP,), "TIMER[1]=START", r" \[ <n> \] = START", "t{n} = TIMER", "TIMER - t{n} are the seconds since"),
     Shape((TP,), "R[1]=R[1]+1", r" \[ <n>(?: :[^\]]*)? \] = <registers>", "R{n} = {registers}"),
     Shape((INFORM,), "SET B000 5", r" <name1>[ \t]+<num>", "{name1} = {num}"),
@@ -236,6 +241,7 @@ _DATA = (
 )
 _TEXTS = (
     Shape((RAPID,), 'TPWrite "part " \\Num:=n;', r" <texts> \\(?:Num|Bool) := <name>", "PRINT {texts}; {name}"),
+    Shape((RAPID,), 'TPWrite "n " + NumToStr(n,0);', r" <joined>", "PRINT {joined}"),
     Shape((RAPID,), 'TPWrite "ready";', r" <texts>", "PRINT {texts}"),
     Shape((AS, VPLUS), 'TYPE "part ", n', r" <texts>", "PRINT {texts}"),
     Shape((INFORM,), 'MSG "ready"', r" <texts>", "PRINT {texts}", words="MSG PRINTMSG PRINTDBG"),

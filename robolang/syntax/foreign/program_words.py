@@ -72,7 +72,8 @@ SIGNALS = (
     ),
     Entry("GET_DIGITAL_IN GET_STANDARD_DIGITAL_IN GET_TOOL_DIGITAL_IN GET_ANALOG_IN", (UR,), INPUT, _READ, _FROM_1),
     Entry("WAITTIME", (RAPID,), TIME, "DELAY 0.5"),
-    Entry("WAITDI WAITDO WAITGI WAITUNTIL", (RAPID,), CONDITION, _UNTIL),
+    Entry("WAITDI WAITGI WAITUNTIL", (RAPID,), CONDITION, _UNTIL),
+    Entry("WAITDO", (RAPID,), "waits for an output", note="an output is set when its OUT has run"),
     Entry("WAITROB", (RAPID,), "waits for the end of motion", note="what reads or acts waits for it here"),
     Entry("DLY", (MELFA,), TIME, "DELAY 0.5"),
     Entry("TWAIT", (AS,), TIME, "DELAY 0.5"),
@@ -123,7 +124,7 @@ CONTROL = (
     Entry("ENDFCT", (KRL,), ENDS, "ENDSUB"),
     Entry("ENDFUNCTION ENDROUTINE", (OTHERS,), ENDS, "ENDSUB"),
     Entry("CALLP", (MELFA,), CALLS, "CALL pick"),
-    Entry("CALLPROG", (KAREL,), CALLS, "CALL pick"),
+    Entry("CALLPROG CALL_PROG", (KAREL,), CALLS, "CALL pick"),
     Entry(
         "RUN",
         (TP, KAREL, PAC),
@@ -184,6 +185,7 @@ CONTROL = (
     Entry("SWITCH", (KRL, VAL3, C), "chooses by a value", "SELECT n"),
     Entry("VALUE", (AS, VPLUS), "is a CASE", "CASE 1"),
     Entry("TEST", (RAPID,), "chooses by a value", "SELECT n"),
+    Entry("IFTHEN IFTHENEXP", (INFORM,), "begins a condition", "IF IN(1) = 1 THEN"),
     Entry("ELIF", (UR, PYTHON), "is another condition of an IF", "ELSEIF IN(1) = 1 THEN"),
     Entry("ELSIF", (OTHERS,), "is another condition of an IF", "ELSEIF IN(1) = 1 THEN"),
     Entry("COMMENT REMARK NOTE", (OTHERS,), "begins a comment", "' text"),
@@ -254,6 +256,7 @@ _IN_CELL = "the cell file has them: [tools.tool1], [frames.frame1]"
 
 DATA = (
     Entry("VAR", (KAREL, VAL3), "declares variables", "x = 5", note="names need no declaration"),
+    Entry("NUM", (VAL3,), "declares a variable", "x = 5", note="names need no declaration"),
     Entry("VAR PERS NUM ROBTARGET LOCAL", (RAPID,), "declares a variable", "x = 5", note="names need no declaration"),
     Entry("DECL REAL E6POS POS GLOBAL", (KRL,), "declares a variable", "x = 5", note="names need no declaration"),
     Entry("BOOL STRING", (RAPID, VAL3), "declares a variable", "x = 5", note="names need no declaration"),

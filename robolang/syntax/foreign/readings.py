@@ -199,6 +199,12 @@ def awaited(text: str) -> str:
     return f"IN({abs(int(text)) - 1000}) = {0 if text.startswith('-') else 1}"
 
 
+def joined(text: str) -> str:
+    """Return what PRINT shows for texts that + joins, numbers as they are."""
+    items = re.findall(r'"[^"]*"|NumToStr[ ]*\([ ]*(?:\w+)|\w+(?=[ ]*(?:\+|\Z))', text, re.IGNORECASE)
+    return "; ".join(re.sub(r"(?i)NumToStr[ ]*\([ ]*", "", item) for item in items)
+
+
 def last_words(text: str) -> str:
     """Return the names of parameters without their types: ``a, b`` for ``num a, num b``."""
     return ", ".join(each.split()[-1] for each in text.split(","))
@@ -261,6 +267,8 @@ READINGS = {
     "arguments": Reading(r"[^;'{}\\]+", lambda text: registers(inputs(text))),
     "target": Reading(r"\*?\w+", lambda text: text if text[0] in "*0123456789" else f"*{text}"),
     "rounds": Reading(r"[1-9]\d{0,8}", lambda text: str(int(text) - 1)),
+    "bound": Reading(r"[A-Za-z_]\w*|" + _NUMBER),
+    "joined": Reading(r'"[^"]*"(?:[ ]*\+[ ]*(?:"[^"]*"|NumToStr[ ]*\([ ]*\w+[ ]*,[ ]*\d+[ ]*\)|\w+))+', joined),
     "option": Reading(r"\w+[ ]*=.*"),
     "element": Reading(r"\[\d+,[1-6]\][ ]*=.+", element, with_word=True),
     # what stands in a note, and not in the statement

@@ -35,6 +35,7 @@ from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
 from robolang.syntax.parser import parse
 from tests.robolang.helpers import cell_with, source
 from tests.robolang.syntax.foreign_lines import LINES, MORE
+from tests.robolang.syntax.fresh_lines import FRESH
 from tests.together import together
 
 LANGUAGES = ("KRL", "RAPID", "MELFA", "INFORM", "TP", "KAREL", "URScript", "AS", "PacScript", "VAL3", "V+")
@@ -96,6 +97,18 @@ def test_a_line_of_another_language_has_one_finding_with_the_statement_to_write(
     assert item.span.start == place
     assert [part for part in line.advice if part not in item.hint] == []
     assert [part for part in line.never if part in item.hint] == []
+
+
+def test_the_second_figure_has_a_hundred_lines_that_the_first_has_not():
+    assert len({line.text for line in FRESH} - {line.text for line in (*LINES, *MORE)}) == 100
+    assert {line.language for line in FRESH} == set(LANGUAGES) - {"V+"}
+
+
+@pytest.mark.parametrize("line", FRESH, ids=lambda line: f"{line.language}: {line.text[:30]}")
+def test_a_fresh_line_has_the_advice_that_is_right(line):
+    hints = "\n".join(item.hint for item in found(line.text))
+    assert [part for part in line.advice if part not in hints] == []
+    assert [part for part in line.never if part in hints] == []
 
 
 @pytest.mark.parametrize("line", ["MOV P1", "20 MOV P1", "*A MOV P1", "  mov P1"])
@@ -209,6 +222,12 @@ def test_the_example_of_a_shape_has_that_shape(shape):
         ("If M_In(1) = 1 Then *L1", "IF IN(1) = 1 THEN GOTO *L1"),
         ("for i in range(5):", "FOR i = 0 TO 4"),
         ("GO TO again", "GOTO *again"),
+        ("movel(p1, a=1.2, v=0.25) # approach", "MOVE p1, SPEED 250 ' approach"),
+        ("Set do1; ! grip", "OUT(n) = 1 ' grip"),
+        ("DOUT[1] = ON -- grip", "OUT(1) = 1 ' grip"),
+        ('TPWrite "a; b";', 'PRINT "a; b"'),
+        ("$TOOL={X 0,Y 0,Z 150,A 10,B 20,C 30}", "TOOL POSE(0, 0, 150, 30, 20, 10)"),
+        ("Wait IO[5] = On, 3000", "WAIT IN(5) = 1, TIMEOUT 3"),
         ("PULSE DOUT[4] FOR 300", "PULSE 4, 0.3"),
         ("LIN_REL {Y -5, X 2}", "MOVE HERE + (2, -5, 0)"),
         ("LIN_REL {Z 100} #TOOL", "MOVE HERE * (0, 0, 100)"),
@@ -293,6 +312,9 @@ def test_what_is_no_whole_line_has_no_statement(text):
         ("movel(pPick, tGripper, mSlow)", "MOVE pPick", "tGripper, mSlow"),
         ("Move L, @P P2, S=50", "MOVE P2", "S=50"),
         ("LMOVE p2, 2", "MOVE p2", "2"),
+        ("$OUT[25]=FALSE ;auf", "OUT(25) = 0", "auf"),
+        ("Set do1; WaitTime 1;", "OUT(n) = 1", "WaitTime 1"),
+        ("PTP P1 Vel=50 % PDAT1 ;home", "MOVEJ P1, SPEED 50", "PDAT1, home"),
         ("Move L, @P P2", "MOVE P2", "@P"),
         ("J P[1] 50% CNT80", "MOVEJ P1, SPEED 50", "CNT80"),
     ],
@@ -372,6 +394,8 @@ def test_a_line_may_be_several_statements_or_none(text, lines):
         ("P3 = P1 * P2", ("P1 * (P2.X, P2.Y, P2.Z, P2.RX, P2.RY, P2.RZ)",), ("P1 + (",)),
         ("PTP_REL {A1 10}", ("JOINT(",), ()),
         ("SPEED VJ=40.00", ("SPEEDJ 40",), ()),
+        ('PRINT "a"; 5, 6', (";",), ("left out",)),
+        ("set_payload_mass(2)", ("LOAD",), ("CALL",)),
         ("OUT 5 'grip' State=FALSE", ("OUT(5) = 0", "'grip'"), ()),
     ],
 )
