@@ -7,9 +7,10 @@ from robolang.syntax.foreign_lines import BEFORE, MOST, canonical
 from robolang.syntax.keywords import kind_of
 from runtime.core.record import Record
 
+# a run of blanks is taken whole: parts that could share it would take time with its third power
 _CALL = re.compile(
-    r"[ \t]*(?:.*(?<!\w)(?:THEN|ELSE)[ \t]+)?(?:CALL[ \t]+)?(?P<name>[A-Za-z_]\w*)[ \t]*"
-    r"(?:\((?P<inner>.*)\)|(?<=[ \t])(?P<after>[^=:(][^=:]*?))?[ \t]*(?P<end>;?)[ \t]*(?:'.*)?",
+    r"[ \t]*+(?:.*(?<!\w)(?:THEN|ELSE)[ \t]++)?(?:CALL[ \t]++)?(?P<name>[A-Za-z_]\w*+)[ \t]*+"
+    r"(?:\((?P<inner>.*)\)|(?<=[ \t])(?P<after>[^=:(;'](?:[^=:;']*[^=:;' \t])?))?[ \t]*+(?P<end>;?)[ \t]*+(?:'.*)?",
     re.IGNORECASE,
 )
 

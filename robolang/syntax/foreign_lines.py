@@ -19,11 +19,11 @@ MOST = 160
 BEFORE = re.compile(r"[ \t]*(?:\*\w+(?=[ \t]+\S)|:)?")
 """What stands before a line: a label of this language, or the colon after the number of a line of TP."""
 _REMARK = re.compile(
-    r"[ \t]*;[ \t]*+(?!!|//)(?P<after>[^;]*)\Z|(?:[ \t]*;[ \t]*!|[ \t]+(?://|#|!|--)(?=[ \t]))[ \t]*(?P<text>.*)\Z"
+    r"(?<![ \t])[ \t]*+(?:;[ \t]*+(?!!|//)(?P<after>[^;]*)"
+    r"|(?:;[ \t]*+!|(?<=[ \t])(?://|#|!|--)(?=[ \t]))(?P<text>.*))\Z"
 )
 """A comment after a line: of RAPID after ; and !, of others after a sign with blanks; what stands after ; alone."""
 _PRINT = re.compile(r"(?i)[ \t]*PRINT\b")
-_END = re.compile(r"[ \t]*;?[ \t]*\Z")
 
 
 class Proposal(Record):
@@ -48,7 +48,7 @@ def proposal(code: str) -> Proposal | None:
     # a label is of this language, and a line of another one may have been typed after it
     before = BEFORE.match(code)
     # JMP LBL[1]; of TP and RAPID: no sign ends a line here
-    text = _END.sub("", code[before.end() :] if before else code, count=1)
+    text = (code[before.end() :] if before else code).rstrip(" \t").removesuffix(";").rstrip(" \t")
     # of PRINT of this language ; stands between values
     remark = None if _PRINT.match(text) else _REMARK.search(text)
     # a quote that is open there: the sign stands in a text

@@ -314,7 +314,7 @@ _NAMES = re.compile(r"[a-z]+\d?")
 def expression(text: str) -> str:
     """Return the expression of a pattern: readings for their names, any blanks for a blank."""
     # not those of a set of characters, which a blank begins or is one of
-    with_blanks = _BLANK.sub(lambda found: "[ \\t]*" if found[0] == " " else found[0], text)
+    with_blanks = _BLANK.sub(lambda found: "[ \\t]*+" if found[0] == " " else found[0], text)
     return _MACRO.sub(lambda found: f"(?P<{found[1]}{found[2]}>{READINGS[found[1]].pattern})", with_blanks)
 
 
