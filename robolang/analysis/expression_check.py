@@ -99,7 +99,8 @@ class ExpressionCheck:
         if points is not None and node.key not in points and self._defined.is_missing(node):
             message = f"{node.text} has no value: no statement assigns it first, and it is not a taught point"
             elsewhere = other_languages.value(node.key) or other_languages.function(node.key)
-            hint = elsewhere or hint_for(node, self._known) or self._to_give_value(node.text)
+            elsewhere = elsewhere or hint_for(node, self._known) or other_languages.signal(node.text)
+            hint = elsewhere or self._to_give_value(node.text)
             if self._defined.is_of_a_sub(node.key):
                 message = (
                     f"{node.text} has no value here: only a SUB assigns it, and variables of a SUB exist only inside it"

@@ -114,6 +114,15 @@ def function(word: str) -> str:
     return sentence(word, words.functions().get(word.upper(), ()))
 
 
+def signal(name: str) -> str:
+    """Return what stands for a signal by the name that RAPID and VAL3 programs give it, as ``diPart``, or ``""``."""
+    found = re.match(r"(di|DI|gi|GI|do|DO|go|GO)(?:[A-Z_]|\d+\Z)", name)
+    if found is None:
+        return ""
+    is_input = found[1].lower() in ("di", "gi")
+    return f"signals have numbers: {'IN(n) reads input n' if is_input else 'OUT(n) = 1 sets output n'}"
+
+
 def value(word: str) -> str:
     """Return what stands for a value of another language, or ``""``."""
     from robolang.syntax.foreign import words

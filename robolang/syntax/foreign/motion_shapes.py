@@ -27,6 +27,7 @@ _KRL = (
     Shape((KRL,), "PTP HOME Vel=100 % DEFAULT", r" <point> Vel = <pct> %<more>", "MOVEJ {point}{pct}", words=_PTP),
     Shape((KRL,), "PTP {A1 0, A2 -90, A3 90, A4 0, A5 0, A6 0}", _KRL_AXES, _JOINTS, words=_PTP),
     Shape((KRL,), "PTP {X 400, Y 0, Z 500, A 0, B 90, C 0}", _KRL_FRAME, f"MOVEJ {_POSE}", words=_PTP),
+    Shape((KRL,), "PTP XP1:{Z -50}", r" <point> : <moved><more>", "MOVEJ {point} * {moved}", words=_PTP),
     Shape((KRL,), "PTP P1 C_PTP", r" <point> (?:CONT\b|C_\w+(?: C_\w+)?)<more>", "MOVEJ {point}", _CONT, _PTP),
     Shape((KRL,), "PTP XP1", r" <point><more>", "MOVEJ {point}", words=_PTP),
     Shape((KRL,), "PTP_REL {Z 50} #TOOL", r" <moved> #TOOL<more>", "MOVEJ HERE * {moved}", words="PTP_REL SPTP_REL"),
@@ -41,6 +42,7 @@ _KRL = (
     ),
     Shape((KRL,), "LIN P2 Vel=2 m/s CPDAT1", r" <point> Vel = <mps> m/s<more>", "MOVE {point}{mps}", words=_LIN),
     Shape((KRL,), "LIN {X 400, Y 0, Z 500, A 0, B 90, C 0}", _KRL_FRAME, f"MOVE {_POSE}", words=_LIN),
+    Shape((KRL,), "LIN XP1:{Z -50}", r" <point> : <moved><more>", "MOVE {point} * {moved}", words=_LIN),
     Shape((KRL,), "LIN P2 C_DIS", r" <point> (?:CONT\b|C_\w+(?: C_\w+)?)<more>", "MOVE {point}", _CONT, _LIN),
     Shape((KRL,), "LIN XP2", r" <point><more>", "MOVE {point}", words=_LIN),
     # #TOOL first: what the other pattern takes is in the frame

@@ -41,9 +41,9 @@ MOVES = (
     Entry(
         "PTP_REL SPTP_REL",
         (KRL,),
-        "moves the joints by angles, or by an offset of the tool point",
-        "MOVEJ HERE + (0, 0, 50)",
-        note="for an offset in mm; no move turns joints by angles: teach a point, or write JOINT(j1, ..., j6)",
+        "moves the joints by angles",
+        missing=True,
+        note="teach a point, or write all joints: MOVEJ JOINT(j1, ..., j6)",
     ),
     Entry("LIN SLIN", (KRL,), LINE, _LINE),
     Entry("LIN_REL SLIN_REL", (KRL,), "moves straight by an offset", _SHIFTED),

@@ -230,6 +230,7 @@ def test_the_example_of_a_shape_has_that_shape(shape):
         ("Wait IO[5] = On, 3000", "WAIT IN(5) = 1, TIMEOUT 3"),
         ("PULSE DOUT[4] FOR 300", "PULSE 4, 0.3"),
         ("LIN_REL {Y -5, X 2}", "MOVE HERE + (2, -5, 0)"),
+        ("LIN XP1:{Z -50} C_DIS", "MOVE XP1 * (0, 0, -50)"),
         ("LIN_REL {Z 100} #TOOL", "MOVE HERE * (0, 0, 100)"),
         ("LIN_REL {Z 100, A 90} #TOOL", "MOVE HERE * (0, 0, 100, 0, 0, 90)"),
         (
@@ -392,7 +393,11 @@ def test_a_line_may_be_several_statements_or_none(text, lines):
         ("$ADVANCE=3", ("remove",), ("s$",)),
         ("StopMove;", ("RAPID", "STOP"), ("did you mean",)),
         ("P3 = P1 * P2", ("P1 * (P2.X, P2.Y, P2.Z, P2.RX, P2.RY, P2.RZ)",), ("P1 + (",)),
-        ("PTP_REL {A1 10}", ("JOINT(",), ()),
+        ("PTP_REL {A1 10}", ("there is none", "JOINT("), ("HERE",)),
+        ("x = diPart", ("IN(n)",), ("did you mean",)),
+        ("IF DI_READY = 1 THEN END", ("IN(n)",), ()),
+        ("x = doGrip", ("OUT(n)",), ()),
+        ("x = diameter", (), ("IN(n)",)),
         ("SPEED VJ=40.00", ("SPEEDJ 40",), ()),
         ('PRINT "a"; 5, 6', (";",), ("left out",)),
         ("set_payload_mass(2)", ("LOAD",), ("CALL",)),
@@ -407,7 +412,7 @@ def test_a_line_without_a_statement_of_its_own_is_explained(text, parts, never):
 
 def test_a_name_of_a_line_with_an_error_is_no_guess():
     hints = [item.hint for item in found("DIM dinput 5\nx = DINPUT[1]\ny = diPart") if item.code == "RBL215"]
-    assert [hint for hint in hints if "INPUT" in hint.upper()] == []
+    assert [hint for hint in hints if "DINPUT" in hint.upper()] == []
 
 
 @pytest.mark.parametrize(
