@@ -7,6 +7,7 @@ from robolang.syntax.declaration import form
 from robolang.syntax.foreign.entry import MAKERS, Entry, listed
 from robolang.syntax.foreign.shapes import FIRST
 from robolang.syntax.foreign.words import meanings
+from robolang.syntax.foreign_calls import unknown
 from robolang.syntax.foreign_lines import proposal
 from robolang.syntax.other_languages import sign
 from robolang.syntax.statements import STATEMENTS
@@ -18,7 +19,7 @@ def explained(text: str) -> str:
     word = text.strip()
     # a word first: T1 or a lone sign may have the shape of a line too
     of_word = "\n\n".join(filter(None, (of_function(word), of_statement(word), of_other_languages(word))))
-    return of_word or _of_inner_word(word) or _of_line(word) or _of_sign(word) or _of_first_word(word)
+    return of_word or _of_inner_word(word) or _of_line(word) or _of_sign(word) or _of_first_word(word) or _of_call(word)
 
 
 def of_function(word: str) -> str:
@@ -69,6 +70,12 @@ def _of_sign(text: str) -> str:
     """Return what stands for a sign of other languages, or ``""``; of a text, only where it is nothing but a sign."""
     hint = sign(text) if re.fullmatch(r"[^\w\s$]{1,2}", text) else ""
     return f"{text}\n  {hint}" if hint else ""
+
+
+def _of_call(text: str) -> str:
+    """Return what a call as of ``pick()`` is here, or ``""``."""
+    call = unknown(text)
+    return f"{text}\n  {call.advice}" if call else ""
 
 
 def _of_first_word(text: str) -> str:

@@ -100,6 +100,7 @@ _BLOCKS = (
     ),
     Shape((RAPID,), "IF ready RETURN;", r" <condition> RETURN", "IF {condition} THEN RETURN"),
     Shape((UR, PYTHON), "if get_digital_in(1) == True:", r" <condition> :", "IF {condition} THEN"),
+    Shape((INFORM,), "IFTHEN IN#(1)=ON", r" <condition>", "IF {condition} THEN"),
     Shape((C, VAL3), "if (x == 1) {", r" <condition> \{?", "IF {condition} THEN"),
     Shape((UR, PYTHON), "elif x == 2:", r" <condition> :", "ELSEIF {condition} THEN", words="ELIF ELSIF"),
     Shape((RAPID, KRL), "ELSEIF x == 2 THEN", r" <condition> THEN", "ELSEIF {condition} THEN", words="ELSEIF ELSIF"),

@@ -91,6 +91,7 @@ def test_a_whole_code_that_does_not_exist_has_no_nearest():
         (" DO[1]=ON ", ("TP", "OUT(1) = 1")),
         ("$IN[1]", ("$IN[1]", "IN(n)")),
         ("$VEL.CP", ("SPEED mm/s",)),
+        ("pick(1,2);", ("CALL pick(1, 2)", "SUB pick")),
         ("MoveL p10\\Bad:=10, z10;", ("RAPID", "MOVE P1")),
         ("MOVE P1, SPEED 5", ("MOVE point", "V+")),
     ],
