@@ -313,10 +313,16 @@ _PAC = (
     Shape(
         (PAC,), "Move C, P1, @P P2", r" C , <point1> , (?:<pass> )?<point2><more>", "MOVEC {point1}, {point2}", _PASS
     ),
-    Shape((PAC,), "Approach L, P1, @P 50", r" L , <point> , (?:<pass> )?<num><more>", "APPROACH {point}, {num}"),
-    Shape((PAC,), "Approach P, P1, @P 50", r" P , <point> , (?:<pass> )?<num><more>", "MOVEJ {point} * (0, 0, -{num})"),
-    Shape((PAC,), "Depart L, @P 50", r" L , (?:<pass> )?<num><more>", "DEPART {num}"),
-    Shape((PAC,), "Depart P, @P 50", r" P , (?:<pass> )?<num><more>", "MOVEJ HERE * (0, 0, -{num})"),
+    Shape((PAC,), "Approach L, P1, @P 50", r" L , <point> , (?:<pass> )?<num><more>", "APPROACH {point}, {num}", _PASS),
+    Shape(
+        (PAC,),
+        "Approach P, P1, @P 50",
+        r" P , <point> , (?:<pass> )?<num><more>",
+        "MOVEJ {point} * (0, 0, -{num})",
+        _PASS,
+    ),
+    Shape((PAC,), "Depart L, @P 50", r" L , (?:<pass> )?<num><more>", "DEPART {num}", _PASS),
+    Shape((PAC,), "Depart P, @P 50", r" P , (?:<pass> )?<num><more>", "MOVEJ HERE * (0, 0, -{num})", _PASS),
 )
 # point, tool and motion descriptor; those of URScript have names and =, so the two never fit one line
 _VAL3_END = r" , <item1> , <item2> \)"

@@ -360,6 +360,24 @@ def test_no_pattern_drops_what_no_hint_names(shape):
         assert shape.example in TYPES or shape.note
 
 
+NUMBER = re.compile(r"(?<![\w.])\d+(?:\.\d+)?")
+OTHER_NUMBERS = ("rx, ry, rz", "n is the", "that of all joints", "PRINT")
+"""What the advice has where a turn, a signal, one axis or the digits of a text are of another kind here."""
+
+
+@pytest.mark.parametrize("text", [*(shape.example for shape in SHAPES), *(line.text for line in FRESH)])
+def test_another_number_in_a_line_is_another_advice(text):
+    """A value that is lost without a note would leave the advice as it is."""
+    result = proposal(text)
+    # 9E9: axes that the robot has not
+    if result is None or "9E9" in text or any(part in result.advice for part in OTHER_NUMBERS):
+        return
+    for number in NUMBER.finditer(text):
+        other = "7" if number[0] != "7" else "3"
+        changed = proposal(f"{text[: number.start()]}{other}{text[number.end() :]}")
+        assert changed is None or changed.advice != result.advice, number
+
+
 @pytest.mark.parametrize("text", ["Move L, @E P2", "PTP P1", "DO[1]=ON", "MOVS", "LMOVE p2"])
 def test_where_nothing_is_lost_nothing_is_noted(text):
     result = proposal(text)
