@@ -49,9 +49,9 @@ class OutputOptions(Group):
         bool, Option("--all", help="Print a row for each statement carried out; default: one for each line.")
     ] = False
     worst: Annotated[bool, Option("--worst", help="Print the row with the largest tool error first.")] = False
-    as_json: Annotated[bool, Option("--json", help="Print the report (JSON) in place of the table.")] = False
+    as_json: Annotated[bool, Option("--json", help="Print the report (JSON), no table; PRINT to stderr.")] = False
     strict: Strict = False
-    quiet: Annotated[bool, Option("--quiet", help="Print errors only; with --strict warnings too.")] = False
+    quiet: Annotated[bool, Option("--quiet", "-q", help="Print errors only; with --strict warnings too.")] = False
 
     @property
     def warnings(self) -> bool:

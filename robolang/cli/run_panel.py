@@ -224,7 +224,7 @@ class PanelProgress(RunOutput):
     def printed(self, text: str) -> None:
         """Show what the program prints above the panel, which comes back at its next turn."""
         # to a file it is written without a sign on the screen
-        if sys.stdout is not None and sys.stdout.isatty():
+        if self.err or (sys.stdout is not None and sys.stdout.isatty()):
             self.clear()
         super().printed(text)
 

@@ -11,6 +11,7 @@ from itertools import pairwise
 import numpy as np
 
 from robolang.execution.activity import Activity, Left, Motion, Pause, TargetSnapshot
+from robolang.execution.grasp import note_grasp
 from robolang.execution.measured import AXIS_FUNCTIONS
 from robolang.execution.observer import Observer
 from robolang.execution.plan_findings import PlanFindings, PlannedMove
@@ -135,10 +136,8 @@ class ControllerTarget:
         if activity is None or activity.cycles == 0:
             if activity is not None and activity.grasp:
                 # noted when the dwell is over, in which the fingers close
-                holding = self._record.controller.plant.hand().holding
-                self._record.statements[activity.run].notes.append(
-                    f"holds '{holding}'" if holding else "closed on nothing"
-                )
+                record = self._record
+                note_grasp(record.statements[activity.run], record.controller, self._project.cell)
             return False
         self._activity = replace(activity, cycles=activity.cycles - 1)
         return True

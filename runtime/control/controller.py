@@ -30,6 +30,7 @@ from runtime.control.request_queue import RequestQueue, SetAside
 from runtime.control.scheduler import IdleProcessor
 from runtime.control.signals import Signals
 from runtime.control.stop_logic import StopLogic
+from runtime.control.touch_warnings import touch_warnings
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array
 from runtime.core.limits import OVERRIDE
@@ -293,11 +294,7 @@ class Controller:
 
     def touch_warnings(self, touches: Iterable[Touch]) -> list[Alarm]:
         """Return the warnings of those touches that are findings; nothing is kept."""
-        codes = ((touch, "RBL537" if touch.fixed else "RBL535") for touch in touches if touch.noticed)
-        return [
-            self.stops.alarm_of(Finding(code=code, message=touch.message, tick=touch.tick, warning=True), touch.place)
-            for touch, code in codes
-        ]
+        return [self.stops.alarm_of(found, place, hint) for found, place, hint in touch_warnings(touches)]
 
     def rename(self, name: Callable[[ProgramLine], ProgramLine]) -> None:
         """Name the statements of moves, alarms and warnings anew: the program that they are of has been edited."""

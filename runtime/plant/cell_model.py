@@ -15,7 +15,7 @@ import numpy as np
 from runtime.cell.cell import CellSpec
 from runtime.cell.gripper import fingers_of
 from runtime.plant.gears import elastic_axes
-from runtime.plant.mjcf import build_mjcf, gear_joint, joint_name, own_pair_name, own_pairs
+from runtime.plant.mjcf import build_mjcf, gear_joint, joint_name, own_pairs, without_pairs
 from runtime.robot.model.spec import RobotSpec
 
 CLEARANCE = 1e-4
@@ -24,8 +24,8 @@ POSTURES = 200
 """Random postures in which pairs of shapes that overlap anyway are searched."""
 OFTEN = 0.5
 """Share of them from which on the contact of a pair is no information."""
-NEVER = -1e3
-"""Distance of shapes that is never reached, m."""
+
+_Pair = tuple[str, str]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,7 +50,8 @@ class CellModel:
         """Return the model of a robot in its cell, for physics steps of ``timestep`` s."""
         _keep_off_the_disk()
         xml = build_mjcf(spec, cell, timestep=timestep)
-        model: Any = mujoco.MjModel.from_xml_string(xml)
+        pairs, idle = _keep_off_itself(xml, spec, cell)
+        model: Any = mujoco.MjModel.from_xml_string(without_pairs(xml, idle) if idle else xml)
         elastic = elastic_axes(spec)
         fingers = len(fingers_of(cell.hand))
         hand = spec.n + len(elastic)  # joints come in the order of build_mjcf: axes and gears, fingers, parts
@@ -61,28 +62,25 @@ class CellModel:
             fingers=slice(hand, hand + fingers),
             parts={part.name: hand + fingers + 7 * k for k, part in enumerate(cell.parts)},
             shapes=tuple(str(model.geom(index).name) for index in range(model.ngeom)),
-            own_pairs=_keep_off_itself(model, xml, spec, cell),
+            own_pairs=tuple(_geoms(model, pair) for pair in pairs),
         )
 
 
-def _keep_off_itself(model: Any, xml: str, spec: RobotSpec, cell: CellSpec) -> tuple[tuple[int, int], ...]:
-    """Return the geoms of the arm and the hand that may meet one another, and let all other pairs of them never meet.
+def _keep_off_itself(xml: str, spec: RobotSpec, cell: CellSpec) -> tuple[list[_Pair], list[_Pair]]:
+    """Return the shapes of the arm and the hand that may meet one another, and the pairs that are left out.
 
     The shapes are coarse: pairs that overlap at home or in more than ``OFTEN`` of some postures are left out.
     """
     pairs = tuple(own_pairs(spec, cell.hand))
     if not pairs:
-        return ()
+        return [], []
     # a fixed seed: check and run must leave out the same pairs
     rows = np.random.default_rng(0).uniform(spec.lower, spec.upper, (POSTURES, spec.n))
-    kept = []
-    for pair, keep in zip(pairs, _informative(xml, pairs, np.vstack([cell.home, rows]).tobytes(), spec.n), strict=True):
-        if keep:
-            kept.append(_geoms(model, pair))
-        else:
-            # MuJoCo cannot drop a pair from a compiled model; a margin that no distance reaches has the same effect
-            model.pair(own_pair_name(*pair)).margin = NEVER
-    return tuple(kept)
+    keep = _informative(xml, pairs, np.vstack([cell.home, rows]).tobytes(), spec.n)
+    # not by a margin that no distance reaches: MuJoCo compares squares of it, and capsules would always meet
+    return [pair for pair, kept in zip(pairs, keep, strict=True) if kept], [
+        pair for pair, kept in zip(pairs, keep, strict=True) if not kept
+    ]
 
 
 @lru_cache(maxsize=32)

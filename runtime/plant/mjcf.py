@@ -340,6 +340,15 @@ def own_pair_name(first: str, second: str) -> str:
     return f"{first}+{second}"
 
 
+def without_pairs(xml: str, pairs: Iterable[tuple[str, str]]) -> str:
+    """Return a model of ``build_mjcf`` without some pairs of ``own_pairs``."""
+    root, names = ET.fromstring(xml), {own_pair_name(*pair) for pair in pairs}
+    for contact in root.iter("contact"):
+        for each in [each for each in contact if each.get("name") in names]:
+            contact.remove(each)
+    return ET.tostring(root, encoding="unicode")
+
+
 def _contacts(root: ET.Element, spec: RobotSpec, cell: CellSpec, timestep: float) -> None:
     contact = ET.SubElement(root, "contact")
     for first, second in own_pairs(spec, cell.hand):

@@ -2,7 +2,10 @@
 
 import json
 import re
+from dataclasses import replace
+from typing import Any
 
+import mujoco
 import pytest
 
 from robolang.execution.session import Session
@@ -50,5 +53,19 @@ def test_pairs_that_say_nothing_never_meet():
     assert ("link1", "link3") not in pairs
     assert ("link3", "palm") in pairs
     built = CellModel.of(cell.robot, cell)
-    margins = [built.model.pair_margin[index] for index in range(len(pairs))]
-    assert margins.count(0.0) == len(built.own_pairs)
+    assert 0 < len(built.own_pairs) <= len(pairs)
+    names = {built.model.pair(index).name for index in range(built.model.npair)}
+    assert len(names - {""}) == len(built.own_pairs)
+
+
+def test_capsules_that_overlap_at_home_never_meet():
+    """So thick that each link is in every other one, as links 3 and 6 are where the wrist axes meet in one point."""
+    cell = builtin_cell()
+    built = CellModel.of(replace(cell.robot, link_radii=(0.3,) * 6), cell)
+    data: Any = mujoco.MjData(built.model)
+    data.qpos[built.motors] = cell.home
+    mujoco.mj_kinematics(built.model, data)
+    mujoco.mj_collision(built.model, data)
+    met = [{built.shapes[a], built.shapes[b]} for a, b in data.contact.geom.tolist()]
+    capsules = {f"link{number}" for number in range(1, 7)}
+    assert not [pair for pair in met if pair <= capsules]

@@ -134,6 +134,7 @@ def _ran(
                 most_us=simulation.most_us,
             )
             session.record.kept_for = _kept_for(output, follow)
+            progress.err = output.as_json
             progress.follow(session.controller)
             # a page is waited for
             with handled(_left_before_motion):

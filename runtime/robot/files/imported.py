@@ -187,8 +187,7 @@ def impossible_inertia(element: Element, inertia: Array, what: str) -> FileFault
 
 def _mended(element: Element) -> str:
     """Return what to do about a body that cannot be."""
-    model = PurePath(element.source.path).name
-    return f"correct it there, or 'robolang robot import {model} --estimate' writes a body that can be"
+    return f"correct it there, or 'robolang robot import {element.source.path} --estimate' writes a body that can be"
 
 
 def serial_chain(root: Node, path: str, name: str, flange: str | None) -> ImportedArm:

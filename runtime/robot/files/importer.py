@@ -251,7 +251,7 @@ def _names(arm: ImportedArm, names: set[str]) -> str:
 
 
 def _estimates(arm: ImportedArm) -> str:
-    return f"'robolang robot import {Path(arm.path).name} --estimate' estimates what is missing"
+    return f"'robolang robot import {arm.path} --estimate' estimates what is missing"
 
 
 def _undriven(arm: ImportedArm, path: Path) -> FileFault:
@@ -259,6 +259,6 @@ def _undriven(arm: ImportedArm, path: Path) -> FileFault:
     return arm.axes[0].hinge.element.fault(
         "RBL608",
         f"no drives, path limits and rated payload: there is no {beside}; missing for {missing_in_template(arm)}",
-        f"'robolang robot import {path.name} --estimate' writes {beside} with estimates; an ideal arm (--no-physics) "
+        f"'robolang robot import {path} --estimate' writes {beside} with estimates; an ideal arm (--no-physics) "
         "needs none",
     )

@@ -214,10 +214,12 @@ def _gaps(table: Table, axes: list[Table], model: str) -> FileFault | None:
     if not incomplete:
         return None
     gaps = [*whole(own, {"path": [f"path.{key}" for key in PATH_KEYS]}), lacking(missing)]
+    # from the working folder: a sidecar stands beside its model
+    path = Path(table.source.path).parent / model
     return incomplete[0].fault(
         "RBL608",
         f"missing in this file: {'; '.join(gap for gap in gaps if gap)}",
-        f"fill in the lines marked MISSING, or 'robolang robot import {model} --estimate --force'; an ideal arm "
+        f"fill in the lines marked MISSING, or 'robolang robot import {path} --estimate --force'; an ideal arm "
         "(--no-physics) needs none",
     )
 

@@ -208,6 +208,15 @@ def test_an_option_of_a_page_that_is_not_there_is_refused(program, words):
     assert result.stdout == ""
 
 
+def test_what_a_program_prints_is_not_in_the_json(program):
+    program.write_text('PRINT "hello"\nDELAY 0.1\n')
+    for words in ([], ["--quiet"]):
+        result = dry("p.rbl", "--json", *words)
+        assert json.loads(result.stdout)["printed"][0]["text"] == "hello"
+        assert "hello\n" in result.stderr
+    assert "hello\n" in dry("p.rbl").stdout
+
+
 @pytest.mark.parametrize("seconds", ["0", "-1", "nan", "inf", "x"])
 def test_a_time_that_is_none_is_refused(program, seconds):
     assert "RBL703" in dry("p.rbl", "--max-time", seconds, code=2).stderr
