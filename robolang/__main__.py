@@ -44,7 +44,7 @@ def _take_colour() -> None:
         from robolang.cli.usage import OptionValueError
 
         error = OptionValueError(OPTION, f"{wrong!r} is not one of {', '.join(CHOICES)}")
-        sys.stderr.write(f"{error}\n")
+        sys.stderr.write(f"error {error}\n")
         sys.exit(2)
 
 

@@ -47,5 +47,10 @@ def options(
 def run_app() -> None:
     """Run the command line and leave the process."""
     escape_what_a_terminal_lacks()
+    if os.environ.get("NO_COLOR"):
+        from typer import rich_utils
+
+        # rich takes away colours alone, and help would be in bold
+        rich_utils.COLOR_SYSTEM = None
     # the name also of `python -m robolang`: shells and messages know no other
     app(prog_name="robolang")

@@ -76,7 +76,9 @@ def _together(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
 
 def _columns(statements: Sequence[Mapping[str, Any]]) -> tuple[_Column, ...]:
     """Return the columns that these statements have: an arm whose axes all turn has no error of a slide."""
-    return tuple(column for column in _COLUMNS if not statements or column.key in statements[0])
+    # a run of nothing has none either
+    keys = statements[0] if statements else {column.key for column in _COLUMNS} - {"joint_error_mm"}
+    return tuple(column for column in _COLUMNS if column.key in keys)
 
 
 def _statements(statements: Sequence[Mapping[str, Any]], width: int) -> Table:

@@ -121,6 +121,7 @@ class TableTarget(Untimed):
         self.first = self._start = counted(machine.home.q, self._channels)
         """Where the channels stand before the first move, pulses."""
         self.sequence: list[TableMove | Marker] = []
+        self._X_flange_tool = project.cell.hand.X_flange_tool
         kinematics = machine.kinematics if isinstance(machine, RobotArm) else Kinematics(project.cell.robot)
         # no clock: to read the time is refused
         self.world = _Unread(project.points, project.cell, kinematics, lambda: 0)
@@ -210,9 +211,19 @@ class TableTarget(Untimed):
                 "remove the SEAM statements, or let the controller run this program",
             )
 
-    def tool(self, effect: SetTool, X_flange_tool: Array) -> NoReturn:
-        """Refuse another tool."""
-        raise Fault("RBL431", "the tool cannot change in the middle of an export")
+    def tool(self, effect: SetTool, X_flange_tool: Array) -> None:
+        """Take the tool of all moves; ``Fault`` RBL431 for another one after the first move."""
+        if np.array_equal(X_flange_tool, self._X_flange_tool):
+            return
+        if any(isinstance(each, TableMove) for each in self.sequence):
+            raise Fault(
+                "RBL431",
+                "the tool cannot change in the middle of an export",
+                "write one TOOL before the first move, and export what has another tool as a program of its own",
+            )
+        self._X_flange_tool = X_flange_tool
+        if isinstance(self.machine, RobotArm):
+            self.machine = self.machine.with_tool(X_flange_tool)
 
     def output(self, effect: SetOutput) -> None:
         """Mark OUT or PULSE."""

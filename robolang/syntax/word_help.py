@@ -22,6 +22,11 @@ def explained(text: str) -> str:
     return of_word or _of_inner_word(word) or _of_line(word) or _of_sign(word) or _of_first_word(word) or _of_call(word)
 
 
+def own_words() -> frozenset[str]:
+    """Return the words of this language, in capitals."""
+    return frozenset(FUNCTIONS).union(*(each.words.split() for each in completions()))
+
+
 def of_function(word: str) -> str:
     """Return form and meaning of a function, or ``""``."""
     function = FUNCTIONS.get(word.upper())

@@ -116,7 +116,7 @@ class RobotArm:
     """A robot of the library with a tool; ``home`` (n,) rad, m of an axis that slides."""
 
     def __init__(self, spec: RobotSpec, profile: Profile, X_flange_tool: Array, home: Array) -> None:
-        self._spec, self._X_flange_tool = spec, X_flange_tool
+        self._spec, self._profile, self._X_flange_tool = spec, profile, X_flange_tool
         self._kinematics = Kinematics(spec)
         # the planner of a run, so that tables and a run take the same curve, wrist changes and refusals included
         self._planner = CartesianPlanner(spec, self._kinematics, profile)
@@ -138,6 +138,10 @@ class RobotArm:
     def kinematics(self) -> Kinematics:
         """The arm's kinematics, for placing taught points."""
         return self._kinematics
+
+    def with_tool(self, X_flange_tool: Array) -> "RobotArm":
+        """Return the same arm with another tool (4, 4)."""
+        return RobotArm(self._spec, self._profile, X_flange_tool, self.home.q)
 
     def placed(self, point: Array) -> "RobotArm":
         """Return the arm itself: it has joints for every coordinate."""

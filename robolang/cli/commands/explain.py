@@ -54,6 +54,15 @@ def _meaning(text: str, entries: "list[Code]") -> str:
     return of_word
 
 
+def means(text: str) -> bool:
+    """Return whether there is something to explain of a text."""
+    import robolang.lint.registry  # noqa: F401 - every code there is
+    from robolang.syntax.word_help import explained
+    from runtime.core.faults import all_codes
+
+    return _find(text, all_codes()) is not None or bool(explained(text))
+
+
 def _data(text: str | None, found: "list[Code] | Code | str") -> Any:
     from robolang.cli.code_data import code_data
 
@@ -88,9 +97,13 @@ def _near(word: str, entries: "list[Code]") -> str:
     digits = word.removeprefix("RBL")
     if digits.isascii() and digits.isdecimal() and len(digits) == 3:
         return ""  # a whole code: those with near numbers mean other things
-    known = [form for entry in entries for form in (entry.code, entry.name.upper())]
+    from robolang.syntax.word_help import own_words
+
+    words = own_words()
+    known = [*words, *(form for entry in entries for form in (entry.code, entry.name.upper()))]
     found = difflib.get_close_matches(word, known, n=1, cutoff=0.7)
-    return found[0] if found and found[0].startswith("RBL") else "".join(found).lower()
+    # names of codes are in small letters
+    return found[0] if found and (found[0].startswith("RBL") or found[0] in words) else "".join(found).lower()
 
 
 def _print_lines(text: str) -> None:

@@ -101,7 +101,8 @@ def ik(options: _PoseOptions, output: JsonOptions) -> None:
 
     Example: robolang kin ik --robot puma560 --pose 596.3,-150.05,657.65,0,90,0
 
-    Exit codes: 0 done; 1 the pose is out of reach; 2 a value or a robot cannot be used.
+    Exit codes: 0 done; 1 the pose is out of reach, or reached only outside the ranges; 2 a value or a robot cannot be
+    used.
     """
     with reported():
         _ik(options, output.as_json)
@@ -126,6 +127,9 @@ def _ik(options: _PoseOptions, as_json: bool) -> None:
             [row for solution in solutions for row in _solution_rows(solution, _keys(kinematics))],
             caption=_caption(kinematics, solutions, left),
         )
+    if not any(solution[_keys(kinematics)[1]] >= 0.0 for solution in solutions):
+        _say_outside(kinematics)
+        raise SystemExit(1)
 
 
 def _caption(kinematics: "Kinematics", solutions: list[dict[str, Any]], left: int) -> str:
@@ -248,6 +252,20 @@ def _say_out_of_reach(kinematics: "Kinematics") -> None:
     echo(f"error {code.code} {code.name} --pose: {meaning} ({robot})\n  help: {code.remedy}", err=True)
 
 
+_WIDEST = 1000
+
+
+def _say_outside(kinematics: "Kinematics") -> None:
+    from runtime.core.faults import lookup
+
+    code = lookup("RBL411")
+    echo(
+        f"error {code.code} {code.name} --pose: every posture has a joint outside its range ({kinematics.spec.title})\n"
+        f"  help: {code.remedy}",
+        err=True,
+    )
+
+
 def _print_table(title: str, headings: list[str], rows: list[list[str]], caption: str | None = None) -> None:
     from rich.box import SIMPLE_HEAD
     from rich.table import Table
@@ -262,5 +280,7 @@ def _print_table(title: str, headings: list[str], rows: list[list[str]], caption
     for row in rows:
         table.add_row(*row)
     console = Console()
-    console.width = max(console.width, console.measure(table).maximum)  # a number is never cut
+    # a number is never cut; asked without the width of the terminal, which would be the answer otherwise
+    needed = console.measure(table, options=console.options.update(max_width=_WIDEST)).maximum
+    console.width = max(console.width, needed)
     console.print(table)

@@ -102,4 +102,17 @@ def test_a_choice_that_is_none_is_a_usage_error():
         [sys.executable, "-m", "robolang", "rules", "--color", "pink"], capture_output=True, text=True, check=False
     )
     assert done.returncode == 2
-    assert done.stderr.startswith("RBL703 --color:")
+    assert done.stderr.startswith("error RBL703 --color:")
+
+
+def test_help_without_colours_is_not_bold_either():
+    for none, painted_too in (({"NO_COLOR": "1"}, False), ({}, True)):
+        environment = {key: value for key, value in os.environ.items() if key != "NO_COLOR"}
+        done = subprocess.run(
+            [sys.executable, "-m", "robolang", "-h"],
+            env={**environment, "FORCE_COLOR": "1", **none},
+            capture_output=True,
+            text=True,
+            check=True,
+        )
+        assert ("\x1b[1m" in done.stdout) is painted_too

@@ -35,6 +35,8 @@ def test_every_code_has_a_meaning_and_says_what_to_do(entry):
         ("RLB412", "RBL412"),
         ("wrist-singularty", "wrist-singularity"),
         ("joint-limits", "joint-limit"),
+        ("APPROCH", "APPROACH"),
+        ("dpart", "DEPART"),
     ],
 )
 def test_an_unknown_code_is_answered_with_the_nearest(word, near):

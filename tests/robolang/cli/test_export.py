@@ -152,6 +152,21 @@ def test_a_frequency_too_high_is_refused_at_its_move_with_a_speed_that_fits(tmp_
     robolang(*words)
 
 
+def test_a_tool_before_the_first_move_is_that_of_the_tables(tmp_path):
+    """The flange makes the same moves by a tool that is 50 mm longer and points that are 50 mm lower."""
+    longer = "TOOL POSE(0, 0, 163.7, 0, 0, 0)\n"
+    path = program(tmp_path, longer + "10 MOVE POSE(480, -220, 690, 180, 0, 180)\n")
+    robolang("export", "pulses", path, "-o", tmp_path / "x")
+    tool = json.loads((tmp_path / "x" / "manifest.json").read_text("utf-8"))["mechanism"]["X_flange_tool"]
+    assert tool[2][3] == pytest.approx(0.1637)
+    # the same one again changes nothing, another one is refused where it stands
+    path.write_text(path.read_text() + longer + "20 MOVE POSE(480, -220, 740, 180, 0, 180)\n")
+    robolang("export", "pulses", path, "-o", tmp_path / "y")
+    path.write_text(path.read_text() + "TOOL POSE(0, 0, 100, 0, 0, 0)\n")
+    result = robolang("export", "pulses", path, "-o", tmp_path / "z", code=3)
+    assert [(line, code) for line, _, code in places(result.stderr)] == [(5, "RBL431")]
+
+
 def test_what_a_table_cannot_carry_is_refused_at_its_place(tmp_path):
     result = robolang("export", "pulses", ROOT / "programs/wrist/seam.rbl", "-o", tmp_path / "x", code=3)
     assert [(line, code) for line, _, code in places(result.stderr)] == [(5, "RBL431")]

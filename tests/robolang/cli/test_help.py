@@ -91,6 +91,7 @@ def test_help_is_asked_for_in_three_forms(words):
 def test_help_of_what_is_no_command_explains_it_or_says_that_it_is_unknown():
     assert robolang("help", "rbl412").stdout == robolang("explain", "RBL412").stdout
     assert "RBL703" in robolang("help", "zzzzzz", code=2).stderr
+    assert {"RBL703", "run"} <= set(re.findall(r"[\w-]+", flat(robolang("help", "runn", code=2).stderr)))
     assert robolang("help").stdout == robolang("--help").stdout
 
 

@@ -117,6 +117,15 @@ def test_out_of_reach_is_exit_code_1_with_an_empty_list():
     assert "RBL410" in result.stderr
 
 
+def test_a_pose_that_is_reached_outside_the_ranges_alone_is_out_of_reach():
+    words = ("ik", "--robot", "puma560", "--pose", "590,-163,569,-170,91,14")
+    result = run(*words, exit_code=1)
+    assert "-16.86" in result.stdout  # the nearest one, and what it lacks
+    assert "RBL411" in result.stderr
+    solutions = json.loads(run(*words, "--json", exit_code=1).stdout)["solutions"]
+    assert max(each["limit_margin_deg"] for each in solutions) < 0.0
+
+
 def test_the_tables_fit_80_columns_uncut_and_name_their_units():
     table = run("ik", "--robot", "puma560", "--pose", "-300,200,900,10,170,20").stdout
     assert all(word in table for word in ("LEFTY ABOVE NOFLIP", "-212.26", "J6", "deg", "margin", "-61.92"))

@@ -54,11 +54,14 @@ ALLOWED = {
 }
 
 
+WARNED = {"a hand closed on nothing presses on a part": [("RBL441", 3)]}
+
+
 @pytest.mark.parametrize("case", ALLOWED)
 def test_what_a_program_is_there_for_is_no_finding(tmp_path, case):
     text, parts = ALLOWED[case]
     report, moved = ran(tmp_path, text, *parts)
-    assert said(report) == [("RBL441", 3)] * ("on nothing" in case)
+    assert said(report) == WARNED.get(case, [])
     assert pushed(report) == []
     assert moved.get("low", 0.0) < 0.5
 
