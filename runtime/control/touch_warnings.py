@@ -16,19 +16,22 @@ _ITSELF = (
 def touch_warnings(touches: Iterable[Touch]) -> Iterator[tuple[Finding, ProgramLine | None, str]]:
     """Yield finding, statement and hint, "" for that of the code, of touches that are findings, in their order."""
     noticed = [touch for touch in touches if touch.noticed]
-    counts = Counter(pair for touch in noticed if (pair := _own_pair(touch)))
-    shown: set[frozenset[str]] = set()
+    counts = Counter(map(_own_pair, noticed))
+    shown: set[frozenset[str] | None] = set()
     for touch in noticed:
         pair, message = _own_pair(touch), touch.message
-        if pair in shown:
+        if pair is not None and pair in shown:
             continue
         if pair is not None:
-            shown.add(pair)
-            more = counts[pair] - 1
-            message += f", and {more} more times" if more > 1 else ", and once more" if more else ""
+            message += _repeated(counts[pair] - 1)
+        shown.add(pair)
         code = "RBL537" if touch.fixed else "RBL535"
         finding = Finding(code=code, message=message, tick=touch.tick, warning=True)
         yield finding, touch.place, "" if pair is None else _ITSELF
+
+
+def _repeated(more: int) -> str:
+    return {0: "", 1: ", and once more"}.get(more, f", and {more} more times")
 
 
 def _own_pair(touch: Touch) -> frozenset[str] | None:
