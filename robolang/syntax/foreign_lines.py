@@ -54,7 +54,8 @@ def proposal(code: str) -> Proposal | None:
     # a quote that is open there: the sign stands in a text
     if remark and remark.start() and text[: remark.start()].count('"') % 2 == 0:
         found = _proposed(text[: remark.start()])
-        if found:
+        # OUT(1) = 1; OUT(2) = 0 begins with a statement of this language: its mistake is the sign
+        if found and found.statements != (canonical(text[: remark.start()]),):
             return _with_remark(found, remark)
     return _proposed(text)
 

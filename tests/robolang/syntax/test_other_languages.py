@@ -42,6 +42,7 @@ def found(text):
         ("; text", "' text"),
         ("MOVE P1 ; text", "' or REM"),
         ("MOVE P1 // text", "' or REM"),
+        ("OUT(1) = 1; OUT(2) = 0", "no ;"),
         ("MOVE P1 //text", "' or REM"),
         ("HAND ON // text", "' or REM"),
         ("HAND ON /* text */", "' or REM"),
