@@ -18,7 +18,7 @@ class CellSymbols(Record):
     """Names of a cell and of its taught points, what the arm may carry (kg), and the limits of its axes and its tool.
 
     ``loads`` have their numbers where these are known. ``cell_file`` and ``points_file`` are the paths that a remedy
-    names; empty: not known.
+    names; empty: not known. ``no_cell`` is the cell file that a program in the built-in cell could have.
     """
 
     robot: str | None = None
@@ -33,6 +33,7 @@ class CellSymbols(Record):
     points: frozenset[str] | None = None
     cell_file: str = ""
     points_file: str = ""
+    no_cell: str = ""
 
     @staticmethod
     def of(
@@ -77,7 +78,7 @@ class CellSymbols(Record):
         known = {"tool": self.tools, "frame": self.frames, "load": self.loads, "sensor": self.sensors}[kind]
         there = f"{kind}s of the cell: {', '.join(sorted(known))}" if known else f"the cell has no {kind}s"
         if not self.cell_file:
-            return f"{there}; a cell file beside the program, NAME.cell.toml, can define more"
+            return f"{there}; a cell file beside the program, {self.no_cell or 'NAME.cell.toml'}, can define more"
         return f"{there}; to add it, write into {self.cell_file}: [{kind}s.{name}] {_KEYS[kind]}"
 
     def where_to_teach(self, name: str) -> str:

@@ -11,6 +11,7 @@ from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
 
+from robolang.cli.builtin_cell import note_builtin_cell
 from robolang.cli.check_options import FixOptions, ReportOptions
 from robolang.cli.errors import DIAGNOSTICS, say, say_all, say_warnings
 from robolang.cli.output import echo, show_finding
@@ -138,6 +139,8 @@ def _say_rest(job: Job, outcomes: Sequence[_Outcome]) -> int:
         echo(f"{_programs(count)} checked", err=True)
         if count < len(outcomes):
             echo(f"{_programs(len(outcomes) - count)} not checked completely; the errors below say why", err=True)
+    for outcome in outcomes:
+        note_builtin_cell(outcome.checked.analysis, outcome.checked.diagnostics)
     say_warnings(doubt for outcome in outcomes for doubt in outcome.doubts)
     return max([0, *(say(fault) for outcome in outcomes for fault in outcome.checked.faults)])
 

@@ -9,12 +9,13 @@ import functools
 import inspect
 import re
 from collections.abc import Callable, Iterator
+from functools import partial
 from typing import Annotated, Any, get_args
 
 import typer
 from typer.core import TyperArgument, TyperCommand, TyperGroup
 
-from robolang.cli.options import Group
+from robolang.cli.options import Group, Offers
 from robolang.cli.usage import OptionValueError
 
 _BY_NAME = inspect.Parameter.KEYWORD_ONLY  # in any order, with a default or without
@@ -79,16 +80,18 @@ def _parameters(group: type[Group]) -> Iterator[inspect.Parameter]:
             min=option.low,
             max=option.high,
             rich_help_panel=panel,
-            autocompletion=None if option.choices is None else _beginning(option.choices),
+            autocompletion=_completion(option.offers if option.choices is None else partial(tuple, option.choices)),
         )
         yield _parameter(name, Annotated[kind, shown], group.DEFAULTS.get(name, inspect.Parameter.empty))
 
 
-def _beginning(choices: tuple[str, ...]) -> Callable[[str], list[str]]:
-    """Return what a shell asks for the choices that a word begins."""
+def _completion(offers: Offers | None) -> Callable[[str], list[str]] | None:
+    """Return what a shell asks for the values that a word begins; None: it completes names of files."""
+    if offers is None:
+        return None
 
     def beginning(incomplete: str) -> list[str]:
-        return [choice for choice in choices if choice.startswith(incomplete)]
+        return [value for value in offers() if value.startswith(incomplete)]
 
     return beginning
 
@@ -100,7 +103,7 @@ def _unwrapped(paragraph: str) -> str:
 
 def _argument(parameter: inspect.Parameter) -> inspect.Parameter:
     kind, argument = parameter.annotation.__origin__, parameter.annotation.__metadata__[0]
-    shown = typer.Argument(metavar=argument.metavar, help=argument.help)
+    shown = typer.Argument(metavar=argument.metavar, help=argument.help, autocompletion=_completion(argument.offers))
     default = None if type(None) in get_args(kind) else inspect.Parameter.empty
     return _parameter(parameter.name, Annotated[kind, shown], default)
 

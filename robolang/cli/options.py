@@ -5,11 +5,20 @@ shows each group in a panel of ``--help``; ``quick`` reads those of ``check`` wi
 library is imported here.
 """
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from runtime.core.record import Record
+
+Offers = Callable[[], Iterable[str]]
+
+
+def robots() -> Iterable[str]:
+    """Return the built-in robots."""
+    from runtime.robot.files.robot_file import library
+
+    return library()
 
 
 class Option:
@@ -23,9 +32,10 @@ class Option:
         key: The key of ``[controller]`` that it sets; None: none.
         envvar: The variable of the environment that it is read from where it is not given.
         low, high: The range of a number, inclusive. NaN passes: a command refuses it.
+        offers: What a shell completes a value to, where others are taken too; called when it asks.
     """
 
-    __slots__ = ("choices", "envvar", "help", "high", "key", "low", "metavar", "names")
+    __slots__ = ("choices", "envvar", "help", "high", "key", "low", "metavar", "names", "offers")
 
     def __init__(
         self,
@@ -40,17 +50,18 @@ class Option:
         self.envvar: str | None = rest.pop("envvar", None)
         self.low: float | None = rest.pop("low", None)
         self.high: float | None = rest.pop("high", None)
+        self.offers: Offers | None = rest.pop("offers", None)
         if rest:  # a misspelt keyword would be an option without its range
             raise TypeError(f"{names[0]}: unknown: {', '.join(rest)}")
 
 
 class Argument:
-    """An argument of a command: how ``--help`` names it, and its help text."""
+    """An argument of a command: how ``--help`` names it, its help text, and what a shell completes it to."""
 
-    __slots__ = ("help", "metavar")
+    __slots__ = ("help", "metavar", "offers")
 
-    def __init__(self, metavar: str, help: str) -> None:
-        self.metavar, self.help = metavar, help
+    def __init__(self, metavar: str, help: str, offers: Offers | None = None) -> None:
+        self.metavar, self.help, self.offers = metavar, help, offers
 
 
 class Group(Record):
@@ -102,7 +113,12 @@ class CellOptions(Group):
     ] = None
     robot: Annotated[
         str | None,
-        Option("--robot", metavar="ROBOT", help="Built-in robot or robot file, instead of the robot of the cell."),
+        Option(
+            "--robot",
+            metavar="ROBOT",
+            help="Built-in robot or robot file, instead of the robot of the cell.",
+            offers=robots,
+        ),
     ] = None
 
 
@@ -110,7 +126,7 @@ class RobotOptions(Group):
     """Which robot, for the commands that need no cell."""
 
     PANEL: ClassVar[str] = "Robot"
-    robot: Annotated[str, Option("--robot", metavar="ROBOT", help=ROBOT)]
+    robot: Annotated[str, Option("--robot", metavar="ROBOT", help=ROBOT, offers=robots)]
 
 
 class PostureOptions(RobotOptions):

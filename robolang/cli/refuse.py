@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from robolang.cli.builtin_cell import note_builtin_cell
 from robolang.cli.errors import DIAGNOSTICS, exit_code, say_warnings
 from robolang.cli.output import show_finding
 
@@ -30,6 +31,7 @@ def refuse_text(project: "Project", *, warnings: bool = True) -> None:
         if warnings or item.severity is Severity.ERROR:
             show_finding(render(item, project.source))
     if not project.ok:
+        note_builtin_cell(project.analysis, project.diagnostics)
         raise SystemExit(DIAGNOSTICS)
 
 

@@ -39,11 +39,11 @@ class Loaded(Record):
     source: "Source"
 
 
-def load(name: str, shown: str = "<stdin>") -> Loaded:
+def load(name: str, shown: str = "") -> Loaded:
     """Read a program, that of ``-`` under the name ``shown``; ``FileFault`` RBL701, RBL702, RBL104, RBL106."""
-    from robolang.core.source import decode_program, read_bytes
+    from robolang.core.source import STANDARD_INPUT, decode_program, read_bytes
 
-    raw, shown = (_standard_input(), shown) if name == STDIO else (read_bytes(name), name)
+    raw, shown = (_standard_input(), shown or STANDARD_INPUT) if name == STDIO else (read_bytes(name), name)
     mark = _MARK if raw.startswith(_MARK) else b""
     return Loaded(name=name, mark=mark, source=decode_program(shown, raw))
 

@@ -24,6 +24,8 @@ from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, FilePlace
 
 MAX_BYTES = 1_000_000
+STANDARD_INPUT = "<stdin>"
+"""The path of a program that is no file, and has none beside it."""
 _LINE_END = re.compile(r"\r\n?|\n")
 
 

@@ -13,6 +13,7 @@ from types import MappingProxyType
 
 from robolang.analysis.analysis import Analysis
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
+from robolang.core.source import STANDARD_INPUT
 from robolang.project.builtin import POINTS, cell_text
 from robolang.project.points import PointStore, load_points, read_points
 from runtime.cell.cell_file import CellFile, parse_cell_file, read_arm_alone, read_cell_file
@@ -125,7 +126,12 @@ def read_beside(
     except Fault as fault:
         faults += fault.all
     names = None if points is None else points.names
-    symbols = CellSymbols.of(facts, names, cell_file=cell_file, points_file=str(points_file(program)))
+    # nothing stands beside the standard input
+    own_points, own = (
+        ("", "") if str(program) == STANDARD_INPUT else (str(points_file(program)), str(own_cell(program)))
+    )
+    symbols = CellSymbols.of(facts, names, cell_file=cell_file, points_file=own_points)
+    symbols = symbols.replaced(no_cell=own if where is None else "")
     return Beside(cell=found, points=points, settings=settings, symbols=symbols, faults=tuple(faults))
 
 

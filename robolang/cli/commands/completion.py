@@ -8,7 +8,7 @@ from robolang.cli.options import Argument
 from robolang.cli.shells import SHELLS, VARIABLE
 from robolang.cli.usage import OptionValueError
 
-_Shell = Annotated[str, Argument("SHELL", f"One of {', '.join(SHELLS)}.")]
+_Shell = Annotated[str, Argument("SHELL", f"One of {', '.join(SHELLS)}.", lambda: SHELLS)]
 
 
 def completion(shell: _Shell) -> None:

@@ -27,7 +27,13 @@ def examples(context: typer.Context) -> None:
         _list(as_json=False)
 
 
-_Name = Annotated[str, Argument("NAME", "Name of an example, as 'robolang examples' lists them.")]
+def _names() -> list[str]:
+    from robolang.templates.examples import examples as known
+
+    return [each.name for each in known()]
+
+
+_Name = Annotated[str, Argument("NAME", "Name of an example, as 'robolang examples' lists them.", _names)]
 
 
 class _TargetOptions(Group):

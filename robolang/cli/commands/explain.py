@@ -18,7 +18,15 @@ if TYPE_CHECKING:
     from runtime.core.faults import Code
 
 
-_Code = Annotated[str | None, Argument("CODE", "Code such as RBL412, or a word as PTP; default: list codes.")]
+def codes() -> list[str]:
+    """Return all codes, for a shell that completes one."""
+    import robolang.lint.registry  # noqa: F401 - every code there is
+    from runtime.core.faults import all_codes
+
+    return [entry.code for entry in all_codes()]
+
+
+_Code = Annotated[str | None, Argument("CODE", "Code such as RBL412, or a word as PTP; default: list codes.", codes)]
 
 
 def explain(code: _Code, output: JsonOptions) -> None:

@@ -7,7 +7,16 @@ from robolang.cli.errors import reported
 from robolang.cli.options import Argument, JsonOptions
 from robolang.cli.usage import OptionValueError
 
-_Words = Annotated[list[str] | None, Argument("[WORD]...", "A command, a code or a word; default: list all commands.")]
+
+def _commands() -> list[str]:
+    from robolang.cli.command_table import TABLE
+
+    return [entry.name for entry in TABLE]
+
+
+_Words = Annotated[
+    list[str] | None, Argument("[WORD]...", "A command, a code or a word; default: list all commands.", _commands)
+]
 
 
 def help(words: _Words) -> None:

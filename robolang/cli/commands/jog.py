@@ -6,6 +6,7 @@ whose ``jog`` is null, is where the arm stands before them, and ``pose`` is that
 
 import json
 import re
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar
@@ -72,6 +73,10 @@ def jog(words: _Words, options: _JogOptions, files: CellOptions, arm: PhysicsOpt
         raise SystemExit(code)
 
 
+_NEAR_DEG = 0.2
+"""How near to its end every axis has to be after a jog, deg."""
+
+
 def _project(program: str | None, files: CellOptions, joints: str | None) -> "Project":
     """Return the cell with its arm at home, or at the joints that were given, and no program to run."""
     import numpy as np
@@ -119,10 +124,26 @@ def _live(project: "Project", *, physics: bool) -> "Live":
     from robolang.pendant.interrupts import Signals
     from robolang.pendant.live import Live
     from robolang.pendant.output import PlainOutput
+    from runtime.core.units import DEG
 
+    # nothing follows a jog that would need the arm in position: dry friction may hold an axis a little short of it
+    profile = project.profile
+    project = project.with_profile(replace(profile, in_position=max(profile.in_position, _NEAR_DEG * DEG)))
     live = Live(project, PlainOutput(sys.stderr, sys.stderr), Signals(), physics=physics, realtime=False)
     live.limit_speed(True)
+    _declare_hand(project, live)
     return live
+
+
+def _declare_hand(project: "Project", live: "Live") -> None:
+    """Declare what hangs on the flange in the start state: no program does it for a jog."""
+    from runtime.core.faults import Fault
+    from runtime.robot.model.payload import declared
+
+    hand = project.cell.hand
+    # a hand that no LOAD may declare is found by the supervision, as in a program
+    with suppress(Fault):
+        live.controller.load(declared(hand.mass, hand.cog, project.cell.robot.rated_payload))
 
 
 def _jogged(live: "Live", requests: "list[JogRequest]", options: _JogOptions) -> tuple[list[dict[str, Any]], int]:

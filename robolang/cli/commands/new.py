@@ -9,9 +9,17 @@ from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from robolang.templates.writing import Written
 
 _Name = Annotated[Path, Argument("NAME", "Folder to make; its last part is the name of the program.")]
+
+
+def _templates() -> "Iterable[str]":
+    from robolang.templates.template import NAMES
+
+    return NAMES
 
 
 class TemplateOptions(RobotOptions):
@@ -21,7 +29,12 @@ class TemplateOptions(RobotOptions):
     # not as choices: what is no template gets the nearest one, and a code of its own
     template: Annotated[
         str,
-        Option("--template", metavar="JOB", help="Job: pick-place, palletise, tend, dispense or measure."),
+        Option(
+            "--template",
+            metavar="JOB",
+            help="Job: pick-place, palletise, tend, dispense or measure.",
+            offers=_templates,
+        ),
     ] = "pick-place"
     robot: str = "puma560"
 

@@ -10,7 +10,7 @@ import typer
 
 from robolang.cli.command import PlainCommand, command
 from robolang.cli.errors import reported, say, say_notes, say_warnings
-from robolang.cli.options import ROBOT, Argument, Group, JsonOptions, Option
+from robolang.cli.options import ROBOT, Argument, Group, JsonOptions, Option, robots
 from robolang.cli.output import echo
 from robolang.core.diagnostics import safe
 from runtime.core.faults import Fault
@@ -46,7 +46,7 @@ def list_robots(output: JsonOptions) -> None:
         Console().print(robots(rows))
 
 
-_Robot = Annotated[str, Argument("ROBOT", ROBOT)]
+_Robot = Annotated[str, Argument("ROBOT", ROBOT, robots)]
 _Model = Annotated[Path, Argument("FILE", "URDF or MJCF file (.urdf, .xml).")]
 
 

@@ -21,6 +21,23 @@ def folder(tmp_path, monkeypatch):
     return tmp_path
 
 
+def test_a_program_without_its_cell_is_noted_once(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "new.rbl").write_text("TOOL none\nMOVE HOME\nMOVE FEEDER\n")
+    for command in ("check", "run"):
+        result = robolang(command, "new.rbl", code=1)
+        assert [
+            line for line in result.stderr.splitlines() if "new.cell.toml" in line and line.startswith("note")
+        ] != []
+        assert (result.stdout + result.stderr).count("note: ") == 1
+    # beside the standard input nothing can stand
+    result = robolang("run", "-", code=1, typed="MOVE HOME\n")
+    assert ".toml" not in result.stderr
+    # with a cell of its own there is nothing to note
+    (tmp_path / "new.cell.toml").write_text((BUILTIN / "cell.toml").read_text())
+    assert "note: " not in robolang("check", "new.rbl", code=1).stderr
+
+
 def test_a_good_program_is_silent():
     result = robolang("check", "good.rbl")
     assert (result.stdout, result.stderr) == ("", "")

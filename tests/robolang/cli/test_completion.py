@@ -44,6 +44,23 @@ def test_commands_options_and_choices_are_completed():
     assert in_bash("run", "--servo", "x") == []
 
 
+@pytest.mark.parametrize(
+    ("words", "found"),
+    [
+        (("new", "x", "--template", "p"), {"pick-place", "palletise"}),
+        (("run", "--robot", "ur"), {"ur5e", "ur10e"}),
+        (("robot", "show", "puma"), {"puma560"}),
+        (("examples", "get", "palle"), {"palletise"}),
+        (("help", "ru"), {"run", "rules"}),
+        (("explain", "RBL41"), {"RBL410", "RBL411", "RBL412", "RBL413"}),
+        (("completion", "z"), {"zsh"}),
+    ],
+)
+def test_values_that_are_known_are_completed(words, found):
+    assert set(in_bash(*words)) >= found
+    assert all(value.startswith(words[-1]) for value in in_bash(*words))
+
+
 @pytest.mark.parametrize("shell", ["zsh", "fish", "powershell"])
 def test_each_shell_is_answered(shell):
     asked = {

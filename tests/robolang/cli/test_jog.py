@@ -37,6 +37,13 @@ def test_with_physics_the_command_is_the_same():
     assert moved == jog(*words)
 
 
+@pytest.mark.physics
+@pytest.mark.parametrize("words", [("X", "10"), ("Z", "-20")])
+def test_a_first_jog_in_the_built_in_cell_has_no_warning(tmp_path, monkeypatch, words):
+    monkeypatch.chdir(tmp_path)
+    assert robolang("jog", *words).stderr == ""
+
+
 def test_other_frames_starts_and_arms():
     _, tool = jog("--frame", "tool", "Z", "20")
     assert tool["pose"][2] == pytest.approx(820, abs=1e-4)
