@@ -126,13 +126,15 @@ def read_beside(
     except Fault as fault:
         faults += fault.all
     names = None if points is None else points.names
-    # nothing stands beside the standard input
-    own_points, own = (
-        ("", "") if str(program) == STANDARD_INPUT else (str(points_file(program)), str(own_cell(program)))
-    )
-    symbols = CellSymbols.of(facts, names, cell_file=cell_file, points_file=own_points)
-    symbols = symbols.replaced(no_cell=own if where is None else "")
+    symbols = CellSymbols.of(facts, names, cell_file=cell_file).replaced(**_could_stand_beside(program, where))
     return Beside(cell=found, points=points, settings=settings, symbols=symbols, faults=tuple(faults))
+
+
+def _could_stand_beside(program: Path, cell: Path | None) -> dict[str, str]:
+    """Return the files that names can be added to; nothing stands beside the standard input."""
+    if str(program) == STANDARD_INPUT:
+        return {}
+    return {"points_file": str(points_file(program)), "no_cell": "" if cell is not None else str(own_cell(program))}
 
 
 def _arm_alone(cell: Path | None, robot: str | None, files: CellFiles) -> ArmFile | None:
