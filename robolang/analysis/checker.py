@@ -12,7 +12,6 @@ need a single statement are reported beside errors of other lines as well. Time 
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Iterator
-from dataclasses import replace
 from itertools import chain, islice
 
 from robolang.analysis.cell_symbols import NOTHING_KNOWN, CellSymbols
@@ -104,7 +103,7 @@ def _advised(found: Diagnostic, statement: Statement) -> Diagnostic:
     text = describe(statement)
     line = foreign_lines.proposal(text)
     # IF ready THEN is a line of several languages, and of this one
-    return found if line is None or line.statements == (text,) else replace(found, hint=line.advice)
+    return found if line is None or line.statements == (text,) else found.replaced(hint=line.advice)
 
 
 def _emptiness(program: Program) -> Iterator[Diagnostic]:
