@@ -111,7 +111,7 @@ wrist-campaign: $(READY)
 	$(BIN)/python -m tests.bench.wrist_campaign
 
 FUZZ_SECONDS ?= 60
-FUZZ_TARGETS ?= lex parse check format points cell mesh model golden log
+FUZZ_TARGETS ?= lex parse check format points cell model mesh golden log
 
 fuzz: $(READY)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check -c constraints.txt -e '.[dev,fuzz]'
