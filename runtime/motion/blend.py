@@ -29,6 +29,7 @@ import numpy as np
 
 from runtime.core.frames import Array, rotation_angles
 from runtime.core.linear import matmul
+from runtime.motion.fine_interpolator import through
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm
 from runtime.motion.speed_cap import SpeedCap
 from runtime.motion.time_scaling import Pace
@@ -135,13 +136,14 @@ def blend(
     )
 
     def holds(m: int) -> bool:
-        rows = _around(a, b, m)
-        if not _joints_hold(rows, arm, limits.pace):
+        # the first and the last of these are no set-points, and what they are off fades to a millionth within ten
+        setpoints = through(_around(a, b, m, 12))[10:-10]
+        if not _joints_hold(setpoints, arm, limits.pace):
             return False
         # the rule for the tool below knows neither the flange nor what lies between rows
-        if limits.cap is not None and not limits.cap.kept(arm.fine.within(rows)):
+        if limits.cap is not None and not limits.cap.kept(arm.fine.within(setpoints)):
             return False
-        X = _poses(arm, rows)
+        X = _poses(arm, _around(a, b, m))
         # the two rows on either side lie on the paths of a and b: they count for the speed, not for the zone
         return bool((_distances(X[2:-2], corner) <= zone).all()) and _Tool.of(X).within(allowed)
 
@@ -170,20 +172,20 @@ def _largest(most: int, holds: Callable[[int], bool]) -> int:
     return good
 
 
-def _around(a: Array, b: Array, m: int) -> Array:
-    """Return the rows of a blend with two of a before it and two of b after it, at rest where there are no more.
+def _around(a: Array, b: Array, m: int, margin: int = 2) -> Array:
+    """Return the rows of a blend with ``margin`` of a before it and as many of b after it, at rest where they end.
 
     A segment of the fine interpolation depends on four set-points, so two neighbours on either side are affected.
     """
     end = len(a) - 1
-    before = a[np.maximum(np.arange(end - m - 2, end - m + 1), 0)]
-    after = b[np.minimum(np.arange(m, m + 3), len(b) - 1)]
+    before = a[np.maximum(np.arange(end - m - margin, end - m + 1), 0)]
+    after = b[np.minimum(np.arange(m, m + margin + 1), len(b) - 1)]
     return np.concatenate([before, a[end - m + 1 : end] + (b[1:m] - b[0]), after])
 
 
-def _joints_hold(rows: Array, arm: Arm, pace: Pace) -> bool:
-    """Return whether rows (N, n) keep range, speed and acceleration of every joint at every servo tick."""
-    lowest, highest, speed, acceleration = pace.fine.extremes(rows)
+def _joints_hold(setpoints: Array, arm: Arm, pace: Pace) -> bool:
+    """Return whether set-points (N, n) keep range, speed and acceleration of every joint at every servo tick."""
+    lowest, highest, speed, acceleration = pace.fine.extremes(setpoints)
     inside = (lowest >= arm.spec.lower - RANGE_TOLERANCE) & (highest <= arm.spec.upper + RANGE_TOLERANCE)
     slow = (speed <= pace.speed * _SLACK) & (acceleration <= pace.acceleration * _SLACK)
     return bool((inside & slow).all())

@@ -32,6 +32,7 @@ from runtime.core.limits import ACCEL, SPEED, TIME
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
+from runtime.motion.fine_interpolator import through
 from runtime.motion.half_turn import in_order
 from runtime.motion.path import ArcPath, LinePath, Path
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
@@ -85,7 +86,7 @@ class WristChange:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class MovePlan:
-    """A planned move: joint set-points ``q`` (N + 1, n) rad, from the start to the end, 8 ms apart.
+    """A planned move: joint angles ``q`` (N + 1, n) rad that it passes, from the start to the end, 8 ms apart.
 
     ``path`` of the tool point, None for a joint move; ``s`` (N + 1,) path parameter of each row. ``slowdown`` None when
     the move runs as programmed, ``wrist`` None when the tool keeps the posture of the path, ``notes`` for the report,
@@ -100,6 +101,11 @@ class MovePlan:
     notes: tuple[str, ...]
     acceleration: float = 1.0
     override: float = 1.0
+
+    @property
+    def setpoints(self) -> Array:
+        """Set-points (N + 1, n) rad of a command that passes ``q``; of a joint move ``q``, on one straight line."""
+        return self.q if self.path is None else through(self.q)
 
     @property
     def modes(self) -> NDArray[np.int8]:

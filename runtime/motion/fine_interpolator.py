@@ -1,12 +1,25 @@
-"""Fine interpolation: a set-point at every servo tick from one every 8 ms.
+"""Fine interpolation: a command at every servo tick from a set-point every 8 ms.
 
-Between two set-points the servo follows the quintic whose speed and acceleration at both ends are the central
-differences ``v_k = (q_{k+1} - q_{k-1}) / 2h`` and ``a_k = (q_{k+1} - 2 q_k + q_{k-1}) / h^2``. It passes through
-every set-point and is continuous to the acceleration. A segment needs the set-point after its end, so it is played
-one cycle after its end arrived (docs/timing.md); one more segment leaves rest and one enters it. A tick plays the
-value of its own start, so commands and readings of a tick belong to the same instant. Everything is linear in
-the four set-points around the segment, so one constant matrix holds positions, speeds and accelerations of all
-ticks (docs/decisions/0009). rad; called once a cycle by the controller, and over whole moves by the planners.
+The command is the uniform cubic B-spline whose control points are the set-points. Between knots k and k + 1, u in
+[0, 1] the share of the cycle that has passed, it is
+
+    q(u) = [ (1-u)^3 c_{k-1} + (3u^3 - 6u^2 + 4) c_k + (-3u^3 + 3u^2 + 3u + 1) c_{k+1} + u^3 c_{k+2} ] / 6
+
+so it is continuous to the acceleration, and with h the cycle, everywhere and not only at ticks,
+
+    position      within the least and the largest of the four set-points around it
+    speed         a mean of three differences    (c_{k+1} - c_k) / h
+    acceleration  on the straight line between two second differences (c_{k+1} - 2 c_k + c_{k-1}) / h^2
+    jerk          the third difference (c_{k+2} - 3 c_{k+1} + 3 c_k - c_{k-1}) / h^3, constant in a cycle
+
+Set-points whose differences keep the limits of a joint are therefore a command that keeps them (docs/decisions/0066).
+At the knots the command is ``(c_{k-1} + 4 c_k + c_{k+1}) / 6``, beside the set-point by h^2/6 of the acceleration;
+``through`` gives the set-points of a command that passes given places.
+
+A segment needs the set-point after its end, so it is played one cycle after its end arrived (docs/timing.md); one more
+segment leaves rest and one enters it. A tick plays the value of its own start, so commands and readings of a tick
+belong to the same instant. One constant matrix holds positions, speeds and accelerations of all ticks. rad; called once
+a cycle by the controller, and over whole moves by the planners.
 """
 
 import numpy as np
@@ -15,60 +28,43 @@ from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.core.state import Stateful
 
+_PASSES = 60
+"""Rounds of ``through`` at most: each leaves 2/3 of the roughest error, and next to nothing of that of a motion."""
 
-def _quintic(u: Array) -> Array:
-    """Return rows that map (q0, v0, a0, q1, v1, a1), in units of the segment, to the position at u in [0, 1]."""
-    # the six Hermite polynomials of degree 5: each is 1 in one of its six conditions at u = 0 and 1, and 0 in the rest
-    u2, u3, u4, u5 = u**2, u**3, u**4, u**5
-    return np.stack(
-        [
-            1 - 10 * u3 + 15 * u4 - 6 * u5,
-            u - 6 * u3 + 8 * u4 - 3 * u5,
-            0.5 * u2 - 1.5 * u3 + 1.5 * u4 - 0.5 * u5,
-            10 * u3 - 15 * u4 + 6 * u5,
-            -4 * u3 + 7 * u4 - 3 * u5,
-            0.5 * u3 - u4 + 0.5 * u5,
-        ],
-        axis=-1,
-    )
+_THERE = 1e-15
+"""An error of less, rad, is rounding."""
 
 
-def _quintic_speed(u: Array) -> Array:
-    """Return the derivatives d/du of the rows of ``_quintic``."""
-    u2, u3, u4 = u**2, u**3, u**4
-    return np.stack(
-        [
-            -30 * u2 + 60 * u3 - 30 * u4,
-            1 - 18 * u2 + 32 * u3 - 15 * u4,
-            u - 4.5 * u2 + 6 * u3 - 2.5 * u4,
-            30 * u2 - 60 * u3 + 30 * u4,
-            -12 * u2 + 28 * u3 - 15 * u4,
-            1.5 * u2 - 4 * u3 + 2.5 * u4,
-        ],
-        axis=-1,
-    )
+def _weights(u: Array) -> Array:
+    """Return (..., 4): the share of the set-points (c_-1, c_0, c_1, c_2) in the position at u in [0, 1]."""
+    return np.stack([(1 - u) ** 3, 3 * u**3 - 6 * u**2 + 4, -3 * u**3 + 3 * u**2 + 3 * u + 1, u**3], axis=-1) / 6.0
 
 
-def _quintic_acceleration(u: Array) -> Array:
-    """Return the second derivatives of the rows of ``_quintic``."""
-    u2, u3 = u**2, u**3
-    return np.stack(
-        [
-            -60 * u + 180 * u2 - 120 * u3,
-            -36 * u + 96 * u2 - 60 * u3,
-            1 - 9 * u + 18 * u2 - 10 * u3,
-            60 * u - 180 * u2 + 120 * u3,
-            -24 * u + 84 * u2 - 60 * u3,
-            3 * u - 12 * u2 + 10 * u3,
-        ],
-        axis=-1,
-    )
+def _speed_weights(u: Array) -> Array:
+    """Return the derivatives d/du of ``_weights``."""
+    return 0.5 * np.stack([-((1 - u) ** 2), 3 * u**2 - 4 * u, -3 * u**2 + 2 * u + 1, u**2], axis=-1)
 
 
-# (q0, v0, a0, q1, v1, a1) from the set-points (q_{-1}, q_0, q_1, q_2), in units of the segment
-_DIFFERENCES = np.array(
-    [[0, 1, 0, 0], [-0.5, 0, 0.5, 0], [1, -2, 1, 0], [0, 0, 1, 0], [0, -0.5, 0, 0.5], [0, 1, -2, 1]], dtype=float
-)
+def _acceleration_weights(u: Array) -> Array:
+    """Return the second derivatives of ``_weights``."""
+    return np.stack([1 - u, 3 * u - 2, 1 - 3 * u, u], axis=-1)
+
+
+def through(positions: Array) -> Array:
+    """Return the set-points (N + 1, n) of a command that passes ``positions`` (N + 1, n) at its knots.
+
+    The first and the last are set-points already, which stay: those at which it rests, or that it shares with another
+    motion. A command that rests there passes knots 0 and N beside by a sixth of the first and the last step, along it.
+    """
+    setpoints = np.array(positions, dtype=np.float64)
+    inner = setpoints[1:-1]
+    # by rounds, not by a banded solver: the matrix is its diagonal but for what a motion bends in a cycle
+    for _ in range(_PASSES):
+        off = positions[1:-1] - (setpoints[:-2] + 4.0 * inner + setpoints[2:]) / 6.0
+        inner += off
+        if not np.abs(off).max(initial=0.0) > _THERE:
+            break
+    return setpoints
 
 
 class FineInterpolator(Stateful):
@@ -80,13 +76,9 @@ class FineInterpolator(Stateful):
     def __init__(self, ticks: int, period_s: float, q: Array) -> None:
         # u = 0 is included and u = 1 is not: a tick plays the value of its own start, the end belongs to the next cycle
         u = np.arange(ticks) / ticks
-        self.ticks = ticks
+        self.ticks, self.period_s = ticks, period_s
         self._weights = np.concatenate(
-            [
-                matmul(_quintic(u), _DIFFERENCES),
-                matmul(_quintic_speed(u), _DIFFERENCES) / period_s,
-                matmul(_quintic_acceleration(u), _DIFFERENCES) / period_s**2,
-            ]
+            [_weights(u), _speed_weights(u) / period_s, _acceleration_weights(u) / period_s**2]
         )
         self._points = np.tile(np.asarray(q, dtype=np.float64), (4, 1))
         self._jumped = False
@@ -116,8 +108,8 @@ class FineInterpolator(Stateful):
 
     @staticmethod
     def weights(u: Array) -> Array:
-        """Return (..., 4): the share of the set-points (q_-1, q_0, q_1, q_2) in the position at u in [0, 1]."""
-        return np.asarray(matmul(_quintic(u), _DIFFERENCES))
+        """Return (..., 4): the share of the set-points (c_-1, c_0, c_1, c_2) in the position at u in [0, 1]."""
+        return _weights(u)
 
     @property
     def settled(self) -> bool:
@@ -137,25 +129,27 @@ class FineInterpolator(Stateful):
         """Return (3, (K + 2) * ticks, n) of set-points (K, n) that follow those in the pipeline; the last is held."""
         return self.continue_(np.concatenate([self._points[1:], setpoints]))
 
+    def rates(self, setpoints: Array) -> tuple[Array, Array]:
+        """Return bounds of speed (N - 1, n) and of acceleration (N - 2, n) between set-points (N, n).
+
+        They hold at ticks and between them: speed k for the segments that set-points k and k + 1 touch, acceleration k
+        where set-point k + 1 is passed, which is where it is largest.
+        """
+        steps = np.diff(setpoints, axis=0)
+        return np.abs(steps) / self.period_s, np.abs(np.diff(steps, axis=0)) / self.period_s**2
+
     def peaks(self, setpoints: Array) -> tuple[Array, Array]:
-        """Return the largest speed and acceleration (n,) of a whole sequence (N + 1, n), as ``expand`` has them."""
-        # not by ``expand``: positions are not needed here, and this is called in every round of ``within_limits``
-        padded = np.concatenate([setpoints[:1], setpoints[:1], setpoints, setpoints[-1:], setpoints[-1:]])
-        windows = np.lib.stride_tricks.sliding_window_view(padded, 4, axis=0)  # (segments, n, 4)
-        ticks = self.ticks
-        moving = np.abs(matmul(windows, self._weights[ticks:].T))  # (segments, n, 2 ticks)
-        return moving[..., :ticks].max(axis=(0, 2)), moving[..., ticks:].max(axis=(0, 2))
+        """Return the bounds (n,) of speed and acceleration of a whole sequence (N + 1, n) from rest to rest."""
+        speed, acceleration = self.rates(np.concatenate([setpoints[:1], setpoints, setpoints[-1:]]))
+        return speed.max(axis=0), acceleration.max(axis=0)
 
     def extremes(self, setpoints: Array) -> tuple[Array, Array, Array, Array]:
-        """Return lowest and highest position, largest speed and acceleration, each (n,), within a continued motion.
+        """Return bounds (n,) of position, lowest and highest, of speed and of acceleration, within a continued motion.
 
-        Measured at the ticks from the second of the set-points (N, n), N at least 4, to the last but one.
+        They hold from the second of the set-points (N, n), N at least 3, to the last but one.
         """
-        windows = np.lib.stride_tricks.sliding_window_view(setpoints, 4, axis=0)  # (segments, n, 4)
-        found, ticks = matmul(windows, self._weights.T), self.ticks  # (segments, n, 3 ticks)
-        q, moving = found[..., :ticks], np.abs(found[..., ticks:])
-        speed, acceleration = moving[..., :ticks].max(axis=(0, 2)), moving[..., ticks:].max(axis=(0, 2))
-        return q.min(axis=(0, 2)), q.max(axis=(0, 2)), speed, acceleration
+        speed, acceleration = self.rates(setpoints)
+        return setpoints.min(axis=0), setpoints.max(axis=0), speed.max(axis=0), acceleration.max(axis=0)
 
     def continue_(self, setpoints: Array) -> Array:
         """Return (3, (N - 1) * ticks, n) for set-points (N, n) of which the first three are already in the pipeline.

@@ -50,11 +50,11 @@ class Interpolator(Stateful):
         """Begin a move, with ``seam`` point by point; ``RuntimeError`` when another one still runs."""
         if self.busy or self._held is not None:
             raise RuntimeError("a move is running")
-        self._rows, self._modes, self.seam, self.fault = plan.q, tuple(plan.modes.tolist()), seam, None
+        self._rows, self._modes, self.seam, self.fault = plan.setpoints, tuple(plan.modes.tolist()), seam, None
         self._commands = tuple(plan.command.tolist()) if isinstance(plan, ChainPlan) else (0,) * len(plan.q)
         if seam is not None:
             # a copy: the rows of the plan are those without deviation, and each is replaced in its cycle
-            self._rows = np.array(plan.q)
+            self._rows = np.array(self._rows)
             self._rows[0] = seam.here
         self._n = 0
 
@@ -93,7 +93,7 @@ class Interpolator(Stateful):
     def _play(self, held: "_Held", course: Array, reached: Array, passed: list[int]) -> None:
         """Hand out what is at these places of held rows, after those that have been reached, numbers ``passed``."""
         towards = [*passed, *np.ceil(course).astype(int).tolist()]  # between two rows it moves towards the later one
-        self._rows = np.concatenate([reached, on_curve(held.rows, course)])
+        self._rows = np.concatenate([reached, on_curve(held.rows, course, reached[-1])])
         self._modes = tuple([held.modes[k] for k in towards])
         self._commands = tuple([held.commands[k] for k in towards])
         self._n = len(reached) - 1

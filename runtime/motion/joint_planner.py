@@ -7,9 +7,7 @@ With d_i the turn of joint i, and v_i, a_i what the move may use of its limits, 
     ds/dt <= min v_i / d_i,    d2s/dt2 <= min a_i / d_i,    d3s/dt3 <= min a_i / (RISE_S d_i)
 
 Robot files have no jerk limit of joints: an acceleration builds up in ``RISE_S``, as on the paths of the built-in
-robots (30 m/s3 to 3 m/s2). Fine interpolation makes the acceleration at the servo ticks a little larger than that of s
-(3 % with a jerk limit, more on the corners of a trapezoid). So that this does not cost speed, the accelerations of s
-are eased by it first; what is then still too fast is slowed as every move (``time_scaling``).
+robots (30 m/s3 to 3 m/s2). The command keeps to what s keeps to (``fine_interpolator``).
 
 Where only a pose is given, its solutions are those of all configurations, each joint turned into its range. Of those
 that fit what the point is taught with, those in which the arm keeps the configuration that it is in come first; of
@@ -19,7 +17,6 @@ rad, s.
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
 from typing import NoReturn
 
 import numpy as np
@@ -34,7 +31,7 @@ from runtime.motion.commands import MoveJoint
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range, few_axes
 from runtime.motion.taught_end import as_taught, turned
 from runtime.motion.time_scaling import Pace
-from runtime.motion.velocity_profile import SpeedLimits, bound, profile
+from runtime.motion.velocity_profile import SpeedLimits, bound
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics, Solution
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
@@ -44,11 +41,6 @@ RISE_S = 0.1
 
 SAME_TIME_S = 1e-9
 """Solutions whose times differ by less, s, are equally soon: rounding must not decide between them."""
-
-_EASINGS = 3
-"""Rounds of easing at most; the accelerations of one joint scale with those of s, so the first is nearly exact."""
-_MARGIN = 1.0 + 1e-6
-"""Rounding that does not call for another round."""
 
 
 class JointLine:
@@ -62,6 +54,10 @@ class JointLine:
         q = self._q_start + s[:, None] * (self._q_end - self._q_start)
         q[0], q[-1] = self._q_start, self._q_end  # to the last bit: the next move starts from here
         check_range(self._arm, s, q)
+        return q
+
+    def setpoints(self, q: Array) -> Array:
+        """Return joints q (N + 1, n): a command between points of a straight line is on it."""
         return q
 
     def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:
@@ -92,7 +88,7 @@ class JointPlanner:
         duration = None if command.duration is None else command.duration / override
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=pace.fine, X_flange_tool=X_flange_tool)
         curve, limits = JointLine(arm, q_start, q_end), self._limits(turns, share, command.acceleration)
-        limits = self._eased(curve, limits.overridden(override), duration)
+        limits = limits.overridden(override)
         s, q, slowdown = pace.within_limits(curve, limits, duration)
         notes = pace.time_note(duration, len(s) - 1)
         return MovePlan(
@@ -159,16 +155,6 @@ class JointPlanner:
         most = self._pace.acceleration * acceleration
         each = np.stack([turns, self._pace.speed * speed, most, most / RISE_S], axis=1)
         return bound([(d, v, a, j) for d, v, a, j in each.tolist()], self._profile.speed_shape)
-
-    def _eased(self, curve: JointLine, limits: SpeedLimits, duration: float | None) -> SpeedLimits:
-        """Return limits with which fine interpolation does not pass the joints' accelerations."""
-        for _ in range(_EASINGS):
-            _, ddq = self._pace.fine.peaks(curve.joints(profile(limits, self._pace.period_s, duration)))
-            ratio = float((ddq / self._pace.acceleration).max()) * _MARGIN
-            if not ratio > _MARGIN:
-                break
-            limits = replace(limits, acceleration=limits.acceleration / ratio, jerk=limits.jerk / ratio)
-        return limits
 
 
 def _point(command: MoveJoint) -> str:

@@ -25,6 +25,7 @@ from runtime.core.units import MM, PERCENT
 from runtime.motion.blend import BlendLimits, Corner, blend
 from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, WristChange
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
+from runtime.motion.fine_interpolator import through
 from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.path import Path
 from runtime.motion.path_ik import Arm
@@ -103,7 +104,7 @@ class Part:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class ChainPlan:
-    """Joint set-points ``q`` (N + 1, n) rad of a chain of moves, 8 ms apart.
+    """Joint angles ``q`` (N + 1, n) rad that a chain of moves passes, 8 ms apart.
 
     ``modes`` (N + 1,) is ``wrist_mode`` of every set-point and ``command`` (N + 1,) the number of the move that it
     belongs to, the last one at the last; ``corners`` lie between the ``parts``.
@@ -114,6 +115,11 @@ class ChainPlan:
     command: NDArray[np.int32]
     parts: tuple[Part, ...]
     corners: tuple[Corner, ...]
+
+    @property
+    def setpoints(self) -> Array:
+        """Set-points (N + 1, n) rad of a command that passes ``q``; of a single move those of its plan."""
+        return self.parts[0].plan.setpoints if len(self.parts) == 1 else through(self.q)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -169,7 +175,7 @@ class MotionPlanner:
         if command.acceleration != plan.acceleration:
             plan = self._plan(q_start, command, cap.X_flange_tool, override)
         for _ in range(_CAPPINGS):
-            ratio = cap.ratio(cap.fine.expand(plan.q))
+            ratio = cap.ratio(cap.fine.expand(plan.setpoints))
             if ratio <= 1.0:
                 break
             # a little below the cap: to aim at it exactly would come to it in ever smaller steps
@@ -188,7 +194,7 @@ class MotionPlanner:
             return command
         # shares of the joints' accelerations move the tool as far as it is from the axes; of a path they are its own
         if isinstance(command, MoveJoint):
-            easing = cap.easing(cap.fine.expand(plan.q))
+            easing = cap.easing(cap.fine.expand(plan.setpoints))
         else:
             easing = cap.gaining(self._spec.path.acceleration * command.acceleration)
         return command if easing == 1.0 else replace(command, acceleration=command.acceleration * easing)

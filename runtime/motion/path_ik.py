@@ -18,7 +18,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse
 from runtime.core.linear import matmul
 from runtime.core.units import MM
-from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator, through
 from runtime.motion.path import Path
 from runtime.motion.wrist.hold import WristTable
 from runtime.motion.wrist.switch import SAME_ANGLES, WristLaw
@@ -95,6 +95,10 @@ class LineSolver:
         q[0] = self.q_start  # where the arm is, to the last bit, not where the inverse kinematics puts it
         check_range(self.arm, s, q)
         return q
+
+    def setpoints(self, q: Array) -> Array:
+        """Return the set-points (N + 1, n) of a command that passes joints q (N + 1, n) at its knots."""
+        return through(q)
 
     def _check_reach(self, s: Array, q: Array) -> None:
         """Refuse a path with samples out of reach; ``Fault`` RBL410 names the first."""
@@ -193,6 +197,10 @@ class WristSolver:
         q[-1] = self._q_end
         check_range(self._line.arm, s, q)
         return q
+
+    def setpoints(self, q: Array) -> Array:
+        """Return the set-points (N + 1, n) of a command that passes joints q (N + 1, n) at its knots."""
+        return through(q)
 
     def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:
         """Raise ``Fault`` RBL412 where axis moves most between two samples."""

@@ -1,14 +1,15 @@
 r"""A controlled stop on the path: the rows of a running plan, played at a falling rate until they stand still.
 
-The rows of a plan are joint angles 8 ms apart, ``q(u)`` with u the row number; the running move plays u = t / P. A stop
-keeps the curve and changes the time on it: ``du/dt`` falls from 1 to 0 over K cycles as
+The rows of a plan are set-points 8 ms apart, and ``q(u)``, u the row number, is the command that fine interpolation
+makes of them; the running move plays u = t / P. A stop keeps the curve and changes the time on it: ``du/dt`` falls from
+1 to 0 over K cycles as
 
     rate(x) = 1 - (10 x^3 - 15 x^4 + 6 x^5),  x = t / (K P),      so u moves on by K / 2 rows
 
-which starts and ends without a step of acceleration. Between rows q(u) is the quintic that the fine interpolator
-plays anyway, so the tool stays on the commanded path. Along it ``dq = q' rate``, ``ddq = q'' rate^2 + q'
-d(rate)/dt``. The smallest K is taken for which joint speeds and accelerations at the servo ticks stay within the
-robot's limits. A move that ends before any such stop would is left to end: it comes to rest by itself.
+which starts and ends without a step of acceleration. The set-points of a stop are those of a command that passes q(u)
+at these places, so the tool stays on the commanded path. Along it ``dq = q' rate``, ``ddq = q'' rate^2 + q'
+d(rate)/dt``. The smallest K is taken for which joint speeds and accelerations stay within the robot's limits. A move that ends before
+any such stop would is left to end: it comes to rest by itself.
 
 Called once by the interpolator when a stop is requested or an alarm is raised; rad, s.
 """
@@ -17,7 +18,7 @@ import numpy as np
 
 from runtime.core.frames import Array
 from runtime.core.units import badness
-from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator, through
 
 _SHORTEST = 3
 _LONGEST = 250
@@ -37,7 +38,7 @@ def stopping_rows(
     ``ends_at_rest`` False: the rows break off in motion, so the best stop that they allow is taken.
     """
     course = _stop(rows, at, fine, (speed, acceleration), ends_at_rest)
-    return rows[at + 1 :] if course is None else _curve(rows, course)
+    return rows[at + 1 :] if course is None else on_curve(rows, course, rows[at])
 
 
 def pause_course(rows: Array, at: int, fine: FineInterpolator, speed: Array, acceleration: Array) -> Array:
@@ -62,18 +63,23 @@ def resume_course(rows: Array, start: float, fine: FineInterpolator, speed: Arra
         rise = start + np.arange(1, cycles + 1) - _progress(cycles)
         course = np.concatenate([rise, np.arange(rise[-1] + 1.0, end + 1.0)])
         course = np.append(course[course < end], end)  # where the curve ends first, it has come to rest by itself
-        played = _curve(rows, np.append(np.full(4, start), course[: cycles + 4]))
+        rest = _curve(rows, np.full(4, start))
+        played = np.concatenate([rest, on_curve(rows, course, rest[0])[: cycles + 4]])
         if _excess(fine, played, (speed, acceleration)).max() <= _SLACK or cycles > _LONGEST:
             return course
         cycles += 2 * max(1, cycles // 16)
 
 
-def on_curve(rows: Array, course: Array) -> Array:
-    """Return the set-points (K, n) at places (K,) of rows: the very rows at whole numbers."""
-    found = _curve(rows, course)
-    whole = course == np.floor(course)
-    found[whole] = rows[course[whole].astype(int)]
-    return found
+def on_curve(rows: Array, course: Array, before: Array) -> Array:
+    """Return the set-points (K, n) of a command that passes places (K,) of rows after the set-point ``before`` (n,).
+
+    From where the places go on row by row up to the last one they are the very rows.
+    """
+    inner = np.append((course[:-1] == np.floor(course[:-1])) & (np.diff(course) == 1.0), course[-1] == len(rows) - 1)
+    first = len(course) - int(np.argmin(np.append(inner[::-1], False)))
+    very = rows[course[first:].astype(int)]
+    made = through(np.concatenate([before[None], _curve(rows, course[:first]), very[:1]]))
+    return np.concatenate([made[1 : first + 1], very])
 
 
 def _stop(
@@ -82,14 +88,14 @@ def _stop(
     """Return the places (K,) of the shortest stop after row ``at`` that fits, None: the rows are left to end."""
     left = len(rows) - 1 - at
     sent = rows[np.maximum(np.arange(at - 3, at + 1), 0)]
-    touched = len(sent) * fine.ticks
+    touched = len(sent)
     # what has been sent cannot be taken back. Under a seam sensor it may itself pass a limit (``seam.SPEED_SLACK``);
     # without this allowance no stop at all would be accepted there, and the arm would go on to the end of its move
     rough = _excess(fine, np.concatenate([sent, rows[at + 1 : at + 1 + len(sent)]]), limits)[:touched].max(initial=0.0)
     cycles, best = _SHORTEST, None
     while cycles / 2.0 <= left and cycles <= _LONGEST:
         course = at + _progress(cycles)
-        ratio = _excess(fine, np.concatenate([sent, _curve(rows, course)]), limits)
+        ratio = _excess(fine, np.concatenate([sent, on_curve(rows, course, sent[-1])]), limits)
         worst = np.maximum(ratio[:touched].max() / np.maximum(1.0, _ROUGHER * rough), ratio[touched:].max(initial=0.0))
         if worst <= _SLACK:
             return course
@@ -100,9 +106,11 @@ def _stop(
 
 
 def _excess(fine: FineInterpolator, played: Array, limits: tuple[Array, Array]) -> Array:
-    """Return the largest share of a joint's speed or acceleration limit at every tick (ticks,) of played rows."""
-    _, dq, ddq = np.abs(fine.continue_(played))
-    return np.asarray(np.maximum((dq / limits[0]).max(axis=1), (ddq / limits[1]).max(axis=1)))
+    """Return the largest share of a joint's speed or acceleration limit about every one of played rows (K,)."""
+    # up to one more: the command comes to rest at the last one
+    speed, acceleration = fine.rates(np.concatenate([played, played[-1:]]))
+    shares = (speed[:-1] / limits[0]).max(axis=1), (acceleration / limits[1]).max(axis=1)
+    return np.asarray(np.maximum(*shares))
 
 
 def _progress(cycles: int) -> Array:
@@ -112,7 +120,7 @@ def _progress(cycles: int) -> Array:
 
 
 def _curve(rows: Array, u: Array) -> Array:
-    """Return q (K, n) at row numbers u (K,): the quintic of the fine interpolator through the rows."""
+    """Return q (K, n) at row numbers u (K,): where the command of these rows is."""
     k = np.minimum(u.astype(int), len(rows) - 2)
     padded = np.concatenate([rows[:1], rows, rows[-1:]])
     windows = np.stack([padded[k + j] for j in range(4)], axis=1)

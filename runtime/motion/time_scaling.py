@@ -47,6 +47,9 @@ class Curve(Protocol):
     def joints(self, s: Array) -> Array:
         """Return q (N, n) rad at s (N,); ``Fault`` where there is none."""
 
+    def setpoints(self, q: Array) -> Array:
+        """Return the set-points (N + 1, n) rad of a command along the curve over its joints q (N + 1, n)."""
+
     def refuse_singular(self, s: Array, q: Array, axis: int) -> NoReturn:
         """Raise ``Fault``: no speed is slow enough for ``axis``."""
 
@@ -104,7 +107,7 @@ class Pace:
         too_fast, found, worst = 0, None, (0, "")  # most cycles that were too few; the plan that holds
         for _ in range(_ROUNDS):
             q = curve.joints(s)
-            ratio, axis, quantity = self.excess(q)
+            ratio, axis, quantity = self.excess(curve.setpoints(q))
             cycles = len(s) - 1
             if ratio <= 1.0:
                 found = s, q

@@ -49,7 +49,7 @@ def test_every_row_of_the_chain_is_sent_and_none_else():
     assert [each.cycles > 0 for each in chain.corners] == [True, True]
     run_out(robot)
     log = signals(robot)
-    np.testing.assert_array_equal(log["q_plan"][::8][: len(chain.q)], chain.q)
+    np.testing.assert_array_equal(log["q_plan"][::8][: len(chain.q)], chain.setpoints)
     np.testing.assert_array_equal(robot.areas.ina, chain.q[-1])
     assert robot.recorder.cycle == len(chain.q) - 1 + 4
     ddq = np.abs(np.diff(log["dq_cmd"], axis=0)) / 1e-3
@@ -114,7 +114,7 @@ def test_a_move_alone_may_be_of_any_kind(kind):
     plan = robot.move(command)
     assert isinstance(plan, MovePlan)
     run_out(robot)
-    np.testing.assert_array_equal(signals(robot)["q_plan"][::8][: len(plan.q)], plan.q)
+    np.testing.assert_array_equal(signals(robot)["q_plan"][::8][: len(plan.q)], plan.setpoints)
     assert (plan.path is None) == (kind == "joint")
     assert robot.wrist_mode == 0
 

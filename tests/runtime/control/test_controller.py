@@ -49,10 +49,10 @@ def test_a_set_point_is_sent_one_cycle_after_it_was_computed_and_played_one_cycl
     for _ in range(5):
         robot.cycle()
     log = signals(robot)
-    np.testing.assert_array_equal(log["q_plan"][0], plan.q[0])
-    np.testing.assert_array_equal(log["q_plan"][8], plan.q[1])
-    np.testing.assert_array_equal(log["q_plan"][16], plan.q[2])
-    np.testing.assert_allclose(log["q_cmd"][24], plan.q[1], atol=1e-15)  # cycle 2 plays plan.q[0] to plan.q[1]
+    np.testing.assert_array_equal(log["q_plan"][0], plan.setpoints[0])
+    np.testing.assert_array_equal(log["q_plan"][8], plan.setpoints[1])
+    np.testing.assert_array_equal(log["q_plan"][16], plan.setpoints[2])
+    np.testing.assert_allclose(log["q_cmd"][24], plan.q[1], atol=1e-14)  # cycle 2 plays plan.q[0] to plan.q[1]
 
 
 def test_the_command_ends_at_rest_exactly_at_the_end_of_the_plan():
@@ -88,7 +88,7 @@ def test_a_set_point_leaves_every_8_ms_whatever_the_background_costs(axis_cost_u
     while robot.moving:
         robot.cycle()
     sent = signals(robot)["q_plan"][::8]
-    np.testing.assert_array_equal(sent[: len(plan.q)], plan.q)
+    np.testing.assert_array_equal(sent[: len(plan.q)], plan.setpoints)
     assert robot.recorder.tick == 8 * robot.recorder.cycle
     assert robot.overruns == 0
 

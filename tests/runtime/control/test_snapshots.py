@@ -210,7 +210,7 @@ CONSTANT = {
     "DynamicsTask": "_areas _model _read_angles _load_mode _inertia_row _steps",
     "IdleProcessor": "",
     "Areas": "",
-    "FineInterpolator": "ticks _weights",
+    "FineInterpolator": "ticks period_s _weights",
     "Interpolator": "",
     "RequestQueue": "planner _spec _areas _fine _limits",
     "StopLogic": "_requests _drives _period_us",

@@ -95,12 +95,12 @@ def test_straight_back_both_moves_accelerate_the_same_way_and_the_joint_limits_w
     assert limits_broken(ROBOT, loose[0]) != []
 
 
-def test_extremes_are_those_of_the_ticks_that_are_played():
+def test_nothing_that_is_played_is_beyond_the_extremes():
     (a,) = rows(0.5)
     middle = a[10:40]
-    played = FineInterpolator(8, 8e-3, a[0]).continue_(middle)[:, : (len(middle) - 3) * 8]
+    played = FineInterpolator(64, 8e-3, a[0]).continue_(middle)[:, : (len(middle) - 3) * 64]
     lowest, highest, speed, acceleration = PACE.fine.extremes(middle)
-    np.testing.assert_allclose(lowest, played[0].min(axis=0), atol=1e-14)
-    np.testing.assert_allclose(highest, played[0].max(axis=0), atol=1e-14)
-    np.testing.assert_allclose(speed, np.abs(played[1]).max(axis=0), atol=1e-11)
-    np.testing.assert_allclose(acceleration, np.abs(played[2]).max(axis=0), atol=1e-9)
+    assert (played[0] >= lowest - 1e-14).all() and (played[0] <= highest + 1e-14).all()
+    assert (np.abs(played[1]) <= speed + 1e-12).all() and (np.abs(played[2]) <= acceleration + 1e-10).all()
+    np.testing.assert_allclose(speed, np.abs(played[1]).max(axis=0), rtol=0.01, atol=1e-12)
+    np.testing.assert_allclose(acceleration, np.abs(played[2]).max(axis=0), rtol=0.01, atol=1e-9)

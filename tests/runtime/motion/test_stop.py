@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from runtime.motion.fine_interpolator import FineInterpolator
+from runtime.motion.fine_interpolator import FineInterpolator, through
 from runtime.motion.stop import stopping_rows
 
 TICKS, PERIOD = 8, 8e-3
@@ -59,18 +59,33 @@ def passed(cycles):
 
 
 def largest(rows):
-    """Largest speed and acceleration of each joint when rows are played from the motion before them to their end."""
-    _, dq, ddq = np.abs(fine(rows).continue_(rows))
+    """Largest speed and acceleration of each joint when rows are played from the motion before them to their end.
+
+    Found on ticks so short that nothing lies between them.
+    """
+    _, dq, ddq = np.abs(FineInterpolator(64, PERIOD, rows[0]).continue_(rows))
     return dq.max(axis=0), ddq.max(axis=0)
+
+
+def on(sent, places):
+    """Set-points of a command that passes places (K, n) after the set-point ``sent`` (n,), and rests at the last."""
+    return through(np.concatenate([np.atleast_2d(sent), places]))[1:]
+
+
+def passes(sent, found):
+    """Where the command is at the knots of set-points (K, n) after ``sent`` (n,), and at last where it rests."""
+    rows = np.concatenate([np.atleast_2d(sent), found, found[-1:]])
+    return np.concatenate([(rows[:-3] + 4.0 * rows[1:-2] + rows[2:-1]) / 6.0, found[-1:]])
 
 
 @pytest.mark.parametrize("cycles", [3, 4, 9])
 def test_on_an_even_motion_the_rows_are_those_of_the_rate_and_half_the_cycles_pass(cycles):
     rows, at = line([1.0, -0.5]), 50
-    needed = largest(np.concatenate([rows[at - 3 : at + 1], rows[at] + np.outer(passed(cycles), rows[1])]))[1]
+    stop = on(rows[at], rows[at] + np.outer(passed(cycles), rows[1]))
+    needed = largest(np.concatenate([rows[at - 3 : at + 1], stop]))[1]
     found = stopping_rows(rows, at, fine(rows), np.array([10.0, 10.0]), needed * 1.0001)
     assert len(found) == cycles
-    np.testing.assert_allclose(found, rows[at] + np.outer(passed(cycles), rows[1]), atol=1e-8)
+    np.testing.assert_allclose(found, stop, atol=1e-8)
     np.testing.assert_allclose(found[-1], rows[at] + rows[1] * cycles / 2.0, atol=1e-12)
 
 
@@ -90,8 +105,7 @@ def test_a_stop_keeps_the_limits_and_the_next_shorter_one_would_not(at, accelera
     assert share(found) <= 1.0 + 1e-9
     if len(found) > CYCLES[0]:
         shorter = CYCLES[CYCLES.index(len(found)) - 1]
-        u = at + passed(shorter)
-        assert share(swing(u)) > 1.0
+        assert share(on(rows[at], swing(at + passed(shorter)))) > 1.0
 
 
 def test_a_speed_that_is_too_high_is_no_stop_either():
@@ -129,7 +143,8 @@ def test_rows_that_break_off_in_motion_get_the_best_stop_that_they_allow():
     longest = max(each for each in CYCLES if each / 2.0 <= 19)
     assert len(found) == longest
     inside = 40 + passed(longest) < 57  # where the four rows around are there
-    np.testing.assert_allclose(found[inside], (rows[40] + np.outer(passed(longest), rows[1]))[inside], atol=1e-8)
+    there = rows[40] + np.outer(passed(longest), rows[1])
+    np.testing.assert_allclose(passes(rows[40], found)[inside], there[inside], atol=1e-8)
     assert largest(np.concatenate([rows[37:41], found]))[1] > limits[1]
     # where nothing is left to choose from, what is left is played
     np.testing.assert_array_equal(stopping_rows(rows, 58, fine(rows), *limits, False), rows[59:])
@@ -160,7 +175,7 @@ def test_the_curve_between_rows_is_that_of_the_fine_interpolator():
     found = stopping_rows(rows, 100, fine(rows), np.array([100.0]), np.array([1e5]))
     assert len(found) == 3
     u = 100 + passed(3)
-    for value, place in zip(found[:, 0], u, strict=True):
+    for value, place in zip(passes(rows[100], found)[:, 0], u, strict=True):
         k = int(place)
         weights = FineInterpolator.weights(np.array(place - k))
         assert value == pytest.approx(float(weights @ rows[k - 1 : k + 3, 0]), abs=1e-9)
@@ -174,27 +189,28 @@ def test_a_limit_that_three_cycles_miss_by_a_twentieth_takes_four(jerk):
     """
 
     def slowing(u):
-        return np.asarray((u - 50) * PERIOD - 8.0 * ((u - 50) * PERIOD) ** 2)[:, None]
+        return np.asarray((u - 50) * PERIOD - 4.0 * ((u - 50) * PERIOD) ** 2)[:, None]
 
     rows = slowing(np.arange(60))
-    needed = largest(np.concatenate([rows[47:51], slowing(50 + passed(3))]))[1]
+    needed = largest(np.concatenate([rows[47:51], on(rows[50], slowing(50 + passed(3)))]))[1]
     rows[:47] -= jerk
     for share, cycles in ((1.01, 3), (0.95, 4)):
         assert len(stopping_rows(rows, 50, fine(rows), np.array([1.6]), needed * share)) == cycles
 
 
 @pytest.mark.parametrize("left", [36, 57])
-def test_a_stop_may_take_all_that_is_left_and_ends_on_the_last_row(left):
+def test_a_stop_may_take_all_of_which_the_neighbours_are_there(left):
     rows = line([1.0], 41 + left)
     found = stopping_rows(rows, 40, fine(rows), np.array([5.0]), np.array([0.1]), False)
-    assert len(found) == 2 * left
-    u = 40 + passed(2 * left)
+    cycles = max(each for each in CYCLES if each / 2.0 < left)
+    assert len(found) == cycles
+    u = 40 + passed(cycles)
     padded = np.concatenate([rows, rows[-1:]])  # the last row is where the arm stays
-    for value, place in zip(found[:, 0], u, strict=True):
+    for value, place in zip(passes(rows[40], found)[:, 0], u, strict=True):
         k = min(int(place), len(rows) - 2)
         weights = FineInterpolator.weights(np.array(place - k))
         assert value == pytest.approx(float(weights @ padded[k - 1 : k + 3, 0]), abs=1e-8)
-    assert found[-1, 0] == pytest.approx(rows[-1, 0], abs=1e-12)
+    assert found[-1, 0] == pytest.approx(float(rows[40, 0]) + 0.5 * cycles * PERIOD, abs=1e-12)
 
 
 def test_a_stop_that_is_too_fast_on_its_way_is_none():
