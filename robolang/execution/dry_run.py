@@ -44,8 +44,8 @@ from robolang.project.project import Project
 from robolang.syntax.ast import Delay, Wait
 from runtime.core.faults import Fault, lookup
 from runtime.core.frames import Array
-from runtime.motion.blend import Corner
 from runtime.motion.cartesian_planner import MovePlan
+from runtime.motion.chain.corner import Corner
 from runtime.motion.commands import Command
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
@@ -55,9 +55,9 @@ from runtime.robot.model.payload import NO_PAYLOAD, Payload
 class RehearsedMove:
     """A move of the rehearsal: its effect and plan, when it begins and ends, us, and its tool (4, 4).
 
-    ``q`` (K, n) rad are its set-points as they are carried out, blends included, row 0 of them row ``first`` of the
-    plan. That row is sent at ``sent_us``: when the move begins, or in the cycle before it where it follows another.
-    ``payload`` is the one declared last, ``corner`` what became of the blend into the next move, None where it stops.
+    ``q`` (K, n) rad is where it goes, corners included, ``s`` (K,) the share of its path. Row 0 is sent at ``sent_us``:
+    when the move begins, or in the cycle before it where it follows another. ``payload`` is the one declared last,
+    ``corner`` what became of the corner to the next move, None where it stops.
     """
 
     effect: MoveTo
@@ -67,14 +67,14 @@ class RehearsedMove:
     ends_us: int
     sent_us: int
     q: Array
-    first: int
+    s: Array
     X_flange_tool: Array
     payload: Payload
     corner: Corner | None
 
     def share(self, row: int) -> float:
         """Return how far the move has come at a row of ``q``, in % of its path."""
-        return 100.0 * float(self.plan.s[min(max(row + self.first, 0), len(self.plan.s) - 1)])
+        return 100.0 * float(self.s[row])
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -234,7 +234,7 @@ class _DryRun(Untimed):
                     sent_us=start_us + part.first * self._period_us,
                     corner=corner,
                     q=joined.q[part.first : part.last + 1],
-                    first=part.first - part.offset,
+                    s=part.s,
                     X_flange_tool=self._X_flange_tool,
                     payload=self._payload,
                 )

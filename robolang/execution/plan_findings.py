@@ -21,8 +21,8 @@ from robolang.project.project import Project
 from runtime.core.frames import Array
 from runtime.core.rounding import beside, down, up
 from runtime.core.units import DEG, MM
-from runtime.motion.blend import Corner
 from runtime.motion.cartesian_planner import MovePlan
+from runtime.motion.chain.corner import Corner
 from runtime.motion.commands import Command, MoveJoint
 from runtime.motion.joint_planner import changed
 from runtime.motion.ruling import Ruling, ruling

@@ -191,7 +191,7 @@ class _Moves:
                     move,
                     f"at {100.0 * float(move.plan.s[row]):.1f} % of the path the arm is {away} "
                     f"{bound.unit} from where its {name}, which is singular; keep {keep} {bound.unit} away",
-                    row=row - move.first,
+                    row=int(np.searchsorted(move.s, move.plan.s[row])),
                 )
                 return
 

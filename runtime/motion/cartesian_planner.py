@@ -31,6 +31,7 @@ from runtime.core.frames import Array, frozen
 from runtime.core.limits import ACCEL, SPEED, TIME
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
+from runtime.motion.chain.piece import Piece, extent_of
 from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
 from runtime.motion.fine_interpolator import through
 from runtime.motion.half_turn import in_order
@@ -101,6 +102,8 @@ class MovePlan:
     notes: tuple[str, ...]
     acceleration: float = 1.0
     override: float = 1.0
+    duration_s: float | None = None
+    piece: Piece | None = None
 
     @property
     def setpoints(self) -> Array:
@@ -109,10 +112,18 @@ class MovePlan:
 
     @property
     def modes(self) -> NDArray[np.int8]:
-        """``wrist_mode`` (N + 1,) of every set-point."""
+        """``wrist_mode`` (N + 1,) of every set-point, the mode of a row that is reached while the wrist is away."""
         modes = np.full(len(self.q), FOLLOWS, dtype=np.int8)
         if self.wrist is not None:
             modes[self.wrist.row + 1 : self.wrist.row_end + 1] = HELD if self.wrist.held else EXCEPTION
+        return modes
+
+    def modes_at(self, s: Array) -> NDArray[np.int8]:
+        """Return ``wrist_mode`` (N,) of rows at shares s (N,) of the path, in another timing of it."""
+        modes = np.full(len(s), FOLLOWS, dtype=np.int8)
+        if self.wrist is not None:
+            away = (s > self.s[self.wrist.row]) & (s <= self.s[self.wrist.row_end])
+            modes[away] = HELD if self.wrist.held else EXCEPTION
         return modes
 
 
@@ -179,6 +190,15 @@ class CartesianPlanner:
             notes=notes,
             acceleration=command.acceleration,
             override=override,
+            duration_s=duration,
+            piece=Piece(
+                curve=curve.choice.solver,
+                path=curve.path,
+                extent=extent_of(curve.path, q[0], q[-1], self._kinematics),
+                limits=curve.limits,
+                q_start=q[0],
+                q_end=q[-1],
+            ),
         )
 
     def curve(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> PathCurve:

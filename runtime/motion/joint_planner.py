@@ -27,6 +27,8 @@ from runtime.core.limits import ACCEL, SPEED_PCT, TIME
 from runtime.core.linear import matmul
 from runtime.core.units import MM, PERCENT
 from runtime.motion.cartesian_planner import NOTHING_TO_DO, MovePlan
+from runtime.motion.chain.piece import JointLine as JointSpan
+from runtime.motion.chain.piece import Piece, extent_of
 from runtime.motion.commands import MoveJoint
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range, few_axes
 from runtime.motion.taught_end import as_taught, turned
@@ -99,6 +101,15 @@ class JointPlanner:
             notes=notes,
             acceleration=command.acceleration,
             override=override,
+            duration_s=duration,
+            piece=Piece(
+                curve=JointSpan(q[0], q[-1]),
+                path=None,
+                extent=extent_of(None, q[0], q[-1], self._kinematics),
+                limits=self._limits(turns, share, command.acceleration),
+                q_start=q[0],
+                q_end=q[-1],
+            ),
         )
 
     def end(self, q_start: Array, command: MoveJoint, X_flange_tool: Array) -> Array:

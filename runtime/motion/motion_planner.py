@@ -22,11 +22,12 @@ from numpy.typing import NDArray
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
 from runtime.core.units import MM, PERCENT
-from runtime.motion.blend import BlendLimits, Corner, blend
 from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, WristChange
+from runtime.motion.chaining import ChainLimits, Joined, joined
+from runtime.motion.chain.corner import Corner
+from runtime.motion.chain.timing import Limits
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
-from runtime.motion.fine_interpolator import through
-from runtime.motion.joint_planner import JointPlanner
+from runtime.motion.joint_planner import RISE_S, JointPlanner
 from runtime.motion.path import Path
 from runtime.motion.path_ik import Arm
 from runtime.motion.speed_cap import PLANNED, SpeedCap
@@ -71,14 +72,14 @@ def tracked_row(commands: Sequence[Command]) -> list[MoveLinear]:
 class Part:
     """One move of a chain: its own plan, and the rows ``first`` (not included) to ``last`` of the chain that are its.
 
-    It takes the cycles between them; the first row of a chain is where it starts. ``offset`` is the row of the chain at
-    which row 0 of the plan lies.
+    It takes the cycles between them; the first row of a chain is where it starts. ``s`` (K,) is the share of its path
+    that is passed at rows first to last.
     """
 
     plan: MovePlan
     first: int
     last: int
-    offset: int
+    s: Array
     period_s: float
 
     @property
@@ -97,6 +98,11 @@ class Part:
         return self.plan.notes
 
     @property
+    def modes(self) -> NDArray[np.int8]:
+        """``wrist_mode`` of its rows, without that of row ``first``."""
+        return self.plan.modes_at(self.s[1:])
+
+    @property
     def planned_s(self) -> float:
         """Time of the part, s."""
         return (self.last - self.first) * self.period_s
@@ -111,15 +117,11 @@ class ChainPlan:
     """
 
     q: Array
+    setpoints: Array
     modes: NDArray[np.int8]
     command: NDArray[np.int32]
     parts: tuple[Part, ...]
     corners: tuple[Corner, ...]
-
-    @property
-    def setpoints(self) -> Array:
-        """Set-points (N + 1, n) rad of a command that passes ``q``; of a single move those of its plan."""
-        return self.parts[0].plan.setpoints if len(self.parts) == 1 else through(self.q)
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -139,6 +141,7 @@ class MotionPlanner:
         """The kinematics of the robot, one for all who plan with this."""
         self._spec = spec
         self._pace = Pace.of(spec, profile)
+        self._limits = _limits(spec, profile)
 
     def plan(
         self,
@@ -227,34 +230,43 @@ class MotionPlanner:
         if not plans:
             raise ValueError("a chain has at least one move")
         arm = Arm(spec=self._spec, kinematics=self.kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
-        q, modes = plans[0].q, plans[0].modes
-        offsets, lasts, corners = [0], [], []
-        # from the first corner on: a blend changes only the first half of the next move, so corners are independent
-        for before, after, zone in zip(plans, plans[1:], zones, strict=False):
-            # half of each move at most, so that the blends at its two ends never meet
-            halves = (len(before.q) - 1) // 2, (len(after.q) - 1) // 2
-            end = len(q) - 1
-            override = min(before.override, after.override)
-            limits = BlendLimits(
-                pace=self._pace.overridden(override),
-                acceleration=self._spec.path.acceleration * max(before.acceleration, after.acceleration),
-                turning=self._spec.path.rotation_speed * override,
-                cap=None if cap is None else self._cap(cap, X_flange_tool),
-            )
-            q, corner = blend(q, after.q, halves, zone, arm, limits)
-            middle = end - corner.cycles + corner.cycles // 2
-            offsets.append(end - corner.cycles)
-            lasts.append(middle)
-            modes = np.concatenate([modes[: middle + 1], after.modes[middle + 1 - offsets[-1] :]])
-            corners.append(corner)
-        lasts.append(len(q) - 1)
+        limits = replace(self._limits, cap=None if cap is None else self._cap(cap, X_flange_tool))
+        found = joined(plans, zones, arm, limits)
         parts = tuple(
-            Part(plan=plan, first=first, last=last, offset=offset, period_s=self._pace.period_s)
-            for plan, first, last, offset in zip(plans, [0, *lasts], lasts, offsets, strict=False)
+            Part(plan=plan, first=first, last=last, s=_shares(found, index, first, last), period_s=self._pace.period_s)
+            for index, (plan, first, last) in enumerate(zip(plans, (0, *found.lasts), found.lasts, strict=False))
         )
-        command = np.repeat(np.arange(len(parts), dtype=np.int32), [part.last - part.first for part in parts])
-        command = np.concatenate([command[:1], command]) if len(command) else np.zeros(1, dtype=np.int32)
-        command[-1] = len(parts) - 1  # also where the last moves end where they start
+        modes = np.concatenate([plans[0].modes[:1], *(part.modes for part in parts)])
         return ChainPlan(
-            q=q if len(plans) == 1 else frozen(q), modes=modes, command=command, parts=parts, corners=tuple(corners)
+            q=frozen(found.q),
+            setpoints=frozen(found.setpoints),
+            modes=modes,
+            command=found.command,
+            parts=parts,
+            corners=found.corners,
         )
+
+
+def _shares(found: Joined, index: int, first: int, last: int) -> Array:
+    """Return the share of its path (K,) at the rows of a move; at the first, the last of the move before it, 0."""
+    own = found.share[first : last + 1].copy()
+    own[found.command[first : last + 1] != index] = 0.0
+    return frozen(own)
+
+
+def _limits(spec: RobotSpec, profile: Profile) -> ChainLimits:
+    """Return what chains of a robot keep to; without a limit of jerk under the speed shape ``trapezoid``."""
+    acceleration, path = spec.per_axis("limits", "acceleration"), spec.path
+    limited = profile.speed_shape == "jerk"
+    rises = (RISE_S, path.acceleration / path.jerk, path.rotation_acceleration / path.rotation_jerk)
+    return ChainLimits(
+        joints=Limits(
+            speed=spec.per_axis("limits", "speed"),
+            acceleration=acceleration,
+            jerk=np.full(spec.n, np.inf),
+            period_s=profile.period_s,
+        ),
+        path=path,
+        mean_s=0.5 * max(rises) if limited else 0.0,
+        cap=None,
+    )

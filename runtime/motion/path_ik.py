@@ -148,6 +148,7 @@ class WristSolver:
         q_end: Array,
         back: LineSolver | None = None,
     ) -> None:
+        self.arm = line.arm
         self._line, self.law, self._q_end, self._back = line, law, q_end, back
         self._frozen = FrozenWrist(line.arm.kinematics, line.arm.X_flange_tool)
         self._q_switch = q_switch

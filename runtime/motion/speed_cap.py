@@ -71,10 +71,14 @@ class SpeedCap:
         """Return the share, up to 1, of the joint accelerations of a motion (3, ticks, n) that gains the cap slowly."""
         return self.gaining(float(speeds(self.kinematics, motion[0], motion[2], self.X_flange_tool).max()))
 
+    @property
+    def gained(self) -> float:
+        """The acceleration that gains the cap slowly, m/s2."""
+        return self.most / GAINED_S
+
     def gaining(self, acceleration: float) -> float:
         """Return the share, up to 1, of an acceleration, m/s2, that gains the cap slowly."""
-        slow = self.most / GAINED_S
-        return slow / acceleration if not acceleration <= slow else 1.0
+        return self.gained / acceleration if not acceleration <= self.gained else 1.0
 
     def kept(self, motion: Array) -> bool:
         """Return whether a motion (3, ticks, n) keeps to the planned share of the cap."""

@@ -8,8 +8,8 @@ makes of them; the running move plays u = t / P. A stop keeps the curve and chan
 
 which starts and ends without a step of acceleration. The set-points of a stop are those of a command that passes q(u)
 at these places, so the tool stays on the commanded path. Along it ``dq = q' rate``, ``ddq = q'' rate^2 + q'
-d(rate)/dt``. The smallest K is taken for which joint speeds and accelerations stay within the robot's limits. A move that ends before
-any such stop would is left to end: it comes to rest by itself.
+d(rate)/dt``. The smallest K is taken for which joint speeds and accelerations stay within the robot's limits. A move
+that ends before any such stop would is left to end: it comes to rest by itself.
 
 Called once by the interpolator when a stop is requested or an alarm is raised; rad, s.
 """

@@ -73,10 +73,9 @@ def examine(spec, kinematics, planner, start, commands, count):
         count["fault"] += 1
         return 0.0
     fine = FineInterpolator(8, 8e-3, chain.q[0])
-    _, dq, ddq = fine.expand(chain.q)
-    count["limits"] += int(not (np.abs(dq).max(axis=0) <= spec.per_axis("limits", "speed") * (1 + 1e-6)).all())
-    hardest = np.abs(ddq).max(axis=0)
-    count["limits"] += int(not (hardest <= spec.per_axis("limits", "acceleration") * (1 + 1e-6)).all())
+    fastest, hardest = fine.peaks(chain.setpoints)
+    count["limits"] += int(not (fastest <= spec.per_axis("limits", "speed") * (1 + 1e-9)).all())
+    count["limits"] += int(not (hardest <= spec.per_axis("limits", "acceleration") * (1 + 1e-9)).all())
     count["ends"] += int((chain.q[0] != start).any() or (chain.q[-1] != chain.parts[-1].plan.q[-1]).any())
     points = (kinematics.forward(chain.q) @ TOOL)[:, :3, 3]
     corners = [(kinematics.forward(part.plan.q[-1]) @ TOOL)[:3, 3] for part in chain.parts[:-1]]

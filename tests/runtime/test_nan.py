@@ -10,7 +10,6 @@ import pytest
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.core.units import badness
-from runtime.motion.blend import _inside
 from runtime.motion.cartesian_planner import CartesianPlanner
 from runtime.motion.commands import MoveLinear
 from runtime.motion.velocity_profile import SpeedLimits, bound, profile
@@ -64,13 +63,6 @@ def test_a_bound_of_nan_is_a_bound(row, column):
     extents[row][column] = NAN
     found = bound([(a, b, c, d) for a, b, c, d in extents], "jerk")
     assert any(math.isnan(value) for value in (found.speed, found.acceleration, found.jerk))
-
-
-def test_a_tool_point_of_nan_is_out_of_the_zone():
-    X = np.tile(np.eye(4), (5, 1, 1))
-    assert _inside(X, np.zeros(3), 0.1) == 4
-    X[3, 1, 3] = NAN
-    assert _inside(X, np.zeros(3), 0.1) == 2
 
 
 def test_a_machine_goes_to_no_point_of_nan():

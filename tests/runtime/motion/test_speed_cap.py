@@ -44,9 +44,9 @@ def test_every_chain_keeps_the_cap_and_ends_where_it_would(name):
         start, commands = random_chain(robot, random, 3)
         full = robot.planner.chain(start, commands, TOOL)
         capped = robot.planner.chain(start, commands, TOOL, cap=MANUAL_SPEED)
-        most = fastest(robot, capped.q).max()
+        most = fastest(robot, capped.setpoints).max()
         assert most <= MANUAL_SPEED * PLANNED
-        assert not limits_broken(robot, capped.q)
+        assert not limits_broken(robot, capped.setpoints)
         for part, whole in zip(capped.parts, full.parts, strict=True):
             np.testing.assert_allclose(part.plan.q[-1], whole.plan.q[-1], atol=1e-9)
         reached += most >= 0.98 * MANUAL_SPEED * PLANNED  # not merely slow

@@ -1,0 +1,194 @@
+r"""Timing a path: as fast as its bounds allow at every place, within the limits of the joints at every moment.
+
+    1  ``rates`` gives the fastest speeds on a grid of the path, with bounded accelerations
+    2  ``narrow`` and ``eased`` give room for the jerk; the mean over T of that law is where the arm is at each cycle
+    3  the path is solved there, and the set-points of that command are held to the limits of the joints: speed,
+       acceleration and jerk, which for set-points are limits at every moment (``fine_interpolator``)
+    4  where one is passed, the bounds are lowered around that place by as much as it is passed, and 1 begins again
+
+So a limit that binds at one place slows the motion there and nowhere else. What is left after ``_ROUNDS`` is slowed as
+a whole, which is rare. Without a limit of jerk T is 0.
+
+A short chain never reaches its accelerations: then a shorter T, with accelerations lower by the same share, is faster.
+The fastest of ``_SHARES`` is taken. Called by ``joined``; x m, t s, q rad.
+"""
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from runtime.core.faults import Fault
+from runtime.core.frames import Array
+from runtime.motion.chain.rates import Bounds, rates
+from runtime.motion.chain.time_law import TimeLaw, eased, narrow
+from runtime.motion.fine_interpolator import through
+from runtime.motion.velocity_profile import check_duration
+
+_ROUNDS = 14
+_FIRMER = 4
+"""Rounds after which bounds are lowered by more than a limit is passed, so that they come to an end."""
+_SLACK = 1.0 + 1e-9
+"""A limit is kept when it is passed by no more than rounding."""
+_SHARES = (1.0, 0.5, 0.25)
+_LONG = 8.0
+"""Motions of more times T are not tried with a shorter one."""
+_WHOLE = 1.0 + 1e-4
+"""Least factor by which a motion is slowed as a whole."""
+_MOST_SLOWING = 400
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Limits:
+    """Limits of the joints (n,): rad/s, rad/s2 and rad/s3, the last infinite where none holds; and the cycle, s."""
+
+    speed: Array
+    acceleration: Array
+    jerk: Array
+    period_s: float
+
+    def passed(self, setpoints: Array) -> tuple[Array, Array, Array]:
+        """Return the shares of speed (N + 6, n), acceleration (N + 5, n) and jerk (N + 4, n) of set-points (N + 1, n).
+
+        From rest to rest: three set-points alike stand before the first and after the last.
+        """
+        steps = np.concatenate([np.repeat(setpoints[:1], 3, axis=0), setpoints, np.repeat(setpoints[-1:], 3, axis=0)])
+        shares = []
+        for limit, power in ((self.speed, 1), (self.acceleration, 2), (self.jerk, 3)):
+            steps = np.diff(steps, axis=0)
+            shares.append(np.abs(steps) / (limit * self.period_s**power))
+        return shares[0], shares[1], shares[2]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Path:
+    """A path to be timed: grid ``x`` (M + 1,), its bounds, ``joints`` q (N, n) at places (N,) of it."""
+
+    x: Array
+    bounds: Bounds
+    joints: Callable[[Array], Array]
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Timed:
+    """A timed path: places ``x`` (N + 1,) and joints ``q`` (N + 1, n), one a cycle, and the ``setpoints`` for them."""
+
+    x: Array
+    q: Array
+    setpoints: Array
+
+
+def timed(path: Path, limits: Limits, mean_s: float) -> Timed:
+    """Return the fastest motion found along a path; ``mean_s`` is T. ``Fault`` RBL404 for one of too long a time."""
+    shares = _SHARES if mean_s > 0.0 else (1.0,)
+    best: Timed | None = None
+    for share in shares:
+        found = _timed(path, limits, mean_s * share, share)
+        if best is None or len(found.x) < len(best.x):
+            best = found
+        # a motion that lasts long gains nothing from a shorter mean, and loses by lower accelerations
+        elif len(found.x) > len(best.x):
+            break
+        if (len(best.x) - 1) * limits.period_s > _LONG * mean_s:
+            break
+    assert best is not None
+    return best
+
+
+def _timed(path: Path, limits: Limits, mean_s: float, share: float) -> Timed:
+    speed, acceleration = np.ones(len(path.x)), np.full(len(path.x), float(share))
+    around = max(1, math.ceil(0.5 * mean_s / limits.period_s)) + 1
+    for round_ in range(_ROUNDS):
+        law = _law(path, path.bounds.scaled(acceleration, speed), mean_s)
+        check_duration(law.seconds + mean_s)
+        found = _along(path, law.sampled(limits.period_s, mean_s))
+        fast, gaining, jerk = limits.passed(found.setpoints)
+        pace = _pace(path, found.x, limits.period_s)
+        if max(float(each.max()) for each in (fast, gaining, jerk, pace)) <= _SLACK:
+            return found
+        firm = 1.0 if round_ < _FIRMER else 1.0 + 0.25 * (round_ - _FIRMER + 1)
+        _lower(path.x, speed, found.x, np.maximum(fast.max(axis=1), pace), (1, around), firm)
+        _lower(path.x, acceleration, found.x, gaining.max(axis=1), (2, around), firm)
+        # the jerk of a change of speed, or that of the path itself, which a lower speed makes less by its cube
+        along = _changing(path, found.x, limits)
+        changes = along >= 0.5 * jerk
+        _lower(path.x, acceleration, found.x, np.where(changes, jerk, 0.0).max(axis=1), (3, around), firm)
+        _lower(path.x, speed, found.x, np.where(changes, 0.0, jerk).max(axis=1), (3, 1), firm / 3.0)
+    return _slowed(path, limits, law, mean_s)
+
+
+def _pace(path: Path, x: Array, period_s: float) -> Array:
+    """Return the share (N + 6,) of the bounds of speed along the path that a motion at x (N + 1,) takes.
+
+    The mean over T carries the speed before a narrow place into it.
+    """
+    places = np.concatenate([np.repeat(x[:1], 3), x, np.repeat(x[-1:], 3)])
+    most = np.interp(places, path.x, np.sqrt(path.bounds.fastest))
+    return np.asarray(np.diff(places) / period_s / np.maximum(most[:-1], most[1:]))
+
+
+def _changing(path: Path, x: Array, limits: Limits) -> Array:
+    """Return the share of the jerk (N + 4, n) that changes of the acceleration along the path at x (N + 1,) make."""
+    places = np.concatenate([np.repeat(x[:1], 3), x, np.repeat(x[-1:], 3)])
+    third = np.abs(np.diff(places, 3)) / limits.period_s**3
+    middle = places[1:-2]
+    slope = np.stack(
+        [np.interp(middle, path.x, column) for column in np.abs(path.bounds.along[:, : len(limits.jerk)]).T]
+    )
+    return np.asarray(third[:, None] * slope.T / limits.jerk)
+
+
+def _law(path: Path, bounds: Bounds, mean_s: float) -> TimeLaw:
+    b = rates(path.x, bounds)
+    if mean_s > 0.0:
+        low = narrow(path.x, b, mean_s)
+        if (low < b).any():
+            b = rates(path.x, bounds.replaced(np.minimum(bounds.fastest, low)))
+        b = eased(path.x, b, mean_s)
+    return TimeLaw.of(path.x, b)
+
+
+def _along(path: Path, law: Array) -> Timed:
+    """Return the motion of a sampled law (N + 1,).
+
+    Its samples are taken as set-points of the place on the path: so the place has no steps within a cycle, and the
+    set-points of the joints follow it without swinging.
+    """
+    x = law.copy()
+    x[1:-1] = (law[:-2] + 4.0 * law[1:-1] + law[2:]) / 6.0
+    q = path.joints(x)
+    return Timed(x=x, q=q, setpoints=through(q))
+
+
+def _lower(grid: Array, field: Array, x: Array, passed: Array, about: tuple[int, int], firmness: float) -> None:
+    """Lower a field (M + 1,) on a grid where a limit is passed, ``about`` (differences, cycles around) that place."""
+    order, margin = about
+    bad = np.flatnonzero(~(passed <= 1.0))
+    if not len(bad):
+        return
+    last = len(x) - 1
+    # three set-points stand before the first
+    starts = x[np.clip(bad - 3 - margin, 0, last)]
+    ends = x[np.clip(bad - 3 + order + margin, 0, last)]
+    lowered = np.ones(len(grid))
+    firsts = np.maximum(np.searchsorted(grid, starts, side="left") - 1, 0)
+    lasts = np.searchsorted(grid, ends, side="right") + 1
+    for first, end, share in zip(firsts.tolist(), lasts.tolist(), passed[bad].tolist(), strict=True):
+        lowered[first:end] = np.minimum(lowered[first:end], 1.0 / (share**firmness * (1.0 + 1e-7)))
+    field *= lowered
+
+
+def _slowed(path: Path, limits: Limits, law: TimeLaw, mean_s: float) -> Timed:
+    """Return a motion slowed as a whole until it keeps every limit; ``Fault`` RBL404 where no time is enough."""
+    factor = _WHOLE
+    for _ in range(_MOST_SLOWING):
+        slower = TimeLaw(x=law.x, v=law.v / factor, t=law.t * factor)
+        check_duration(slower.seconds + mean_s)
+        found = _along(path, slower.sampled(limits.period_s, mean_s))
+        shares = limits.passed(found.setpoints)
+        worst = max(float(each.max()) ** (1.0 / power) for power, each in enumerate(shares, start=1))
+        if worst <= _SLACK:
+            return found
+        factor *= max(worst, _WHOLE)
+    raise Fault("RBL404", "no timing of the moves keeps the limits of the joints")

@@ -1,0 +1,174 @@
+"""Moves in a row, each planned alone, as one motion: paths rounded in the zones, each timed as a whole.
+
+A row of moves is cut where the arm stops: where a zone is 0, or leaves no room. What is between two stops is a
+``ChainPath``; a move between two stops runs as it was planned. Called by ``MotionPlanner.join``; m, rad, s.
+"""
+
+import math
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from runtime.core.frames import Array
+from runtime.core.linear import matmul
+from runtime.motion.cartesian_planner import MovePlan
+from runtime.motion.chain.chain_path import ChainPath, ToolLimits
+from runtime.motion.chain.corner import Corner, Rounding, rounding
+from runtime.motion.chain.piece import Piece
+from runtime.motion.chain.timing import Limits, Path, Timed, timed
+from runtime.motion.path_ik import Arm
+from runtime.motion.speed_cap import PLANNED, SpeedCap
+from runtime.robot.model.drives import PathLimits
+
+_TIMES = 8
+"""Timings of a path until its moves take the TIMEs that are programmed, and keep to a cap."""
+_FIRMLY = 1.0 + 1e-4
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class ChainLimits:
+    """What a chain of one robot keeps to: ``joints``, the ``path`` limits of the tool, a ``cap`` on its speed.
+
+    ``mean_s``: the time in which accelerations build up, 0 without a limit of jerk.
+    """
+
+    joints: Limits
+    path: PathLimits
+    mean_s: float
+    cap: SpeedCap | None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Joined:
+    """Rows ``q`` (N + 1, n) of a row of moves with their ``setpoints``, ``command`` (N + 1,) and ``share`` (N + 1,).
+
+    ``command`` is the number of the move to which a row belongs, ``share`` how far that has come on its path.
+    ``lasts`` (K,) is the last row of each move, and ``corners`` lie between the moves.
+    """
+
+    q: Array
+    setpoints: Array
+    command: NDArray[np.int32]
+    share: Array
+    lasts: tuple[int, ...]
+    corners: tuple[Corner, ...]
+
+
+def joined(plans: Sequence[MovePlan], zones: Sequence[float], arm: Arm, limits: ChainLimits) -> Joined:
+    """Return moves as one motion, rounded in the zones (m) at their ends, the last of which stops."""
+    roundings = [_rounding(*pair, arm) for pair in zip(plans, plans[1:], zones, strict=False)]
+    q, setpoints = [plans[0].q[:1]], [plans[0].q[:1]]
+    command, share = [np.zeros(1, dtype=np.int32)], [np.zeros(1)]
+    corners: list[Corner] = []
+    for first, last in _between_stops(roundings, len(plans)):
+        run = plans[first : last + 1]
+        if first == last:
+            rows, sent, number, passed = run[0].q, run[0].setpoints, np.zeros(len(run[0].q), dtype=int), run[0].s
+        else:
+            path = ChainPath(arm, [_piece(plan) for plan in run], [_there(each) for each in roundings[first:last]])
+            found = _timed(path, run, limits)
+            rows, sent = found.q, found.setpoints
+            number = path.move_at(found.x)
+            passed = path.share_at(found.x)
+            corners += [_corner(path, k, zones[first + k], found.x) for k in range(last - first)]
+        q.append(rows[1:])
+        setpoints.append(sent[1:])
+        command.append((number[1:] + first).astype(np.int32))
+        share.append(passed[1:])
+        if last < len(plans) - 1:
+            corners.append(Corner(radius=zones[last]))
+    whole = np.concatenate(command)
+    lasts = np.searchsorted(whole, np.arange(len(plans)), side="right") - 1
+    whole[-1] = len(plans) - 1  # also where the last moves end where they start
+    return Joined(
+        q=np.concatenate(q),
+        setpoints=np.concatenate(setpoints),
+        command=whole,
+        share=np.concatenate(share),
+        lasts=tuple(np.maximum(lasts, 0).tolist()),
+        corners=tuple(corners),
+    )
+
+
+def _rounding(first: MovePlan, second: MovePlan, zone: float, arm: Arm) -> Rounding | None:
+    if not zone > 0.0 or first.piece is None or second.piece is None:
+        return None
+    found = rounding(first.piece, second.piece, zone, arm)
+    return found if found.half > 0.0 else None
+
+
+def _between_stops(roundings: Sequence[Rounding | None], count: int) -> Iterator[tuple[int, int]]:
+    """Yield the first and the last move between each two stops."""
+    first = 0
+    for k in range(count):
+        if k == count - 1 or roundings[k] is None:
+            yield first, k
+            first = k + 1
+
+
+def _piece(plan: MovePlan) -> Piece:
+    assert plan.piece is not None
+    return plan.piece
+
+
+def _there(found: Rounding | None) -> Rounding:
+    assert found is not None
+    return found
+
+
+def _timed(path: ChainPath, plans: Sequence[MovePlan], limits: ChainLimits) -> Timed:
+    """Return a path timed with the speeds, overrides and TIMEs of its moves."""
+    number = path.move_at(path.x)
+    along = np.array([plan.path is not None for plan in plans])
+    share = np.array([plan.acceleration for plan in plans])
+    most = np.where(along, limits.path.acceleration * share, math.inf)
+    if limits.cap is not None:
+        most = np.minimum(most, limits.cap.gained)
+    tool = ToolLimits(
+        acceleration=most[number],
+        turning=np.where(along, limits.path.rotation_acceleration * share, math.inf)[number],
+    )
+    overrides = np.array([plan.override for plan in plans])
+    bounds = path.bounds((limits.joints.speed, limits.joints.acceleration), tool, overrides)
+    slower, under = np.ones(len(plans)), 1.0
+    for _ in range(_TIMES):
+        fastest = np.minimum(bounds.fastest, _under_cap(path, limits.cap, under)) * slower[number] ** 2
+        found = timed(Path(x=path.x, bounds=bounds.replaced(fastest), joints=path.joints), limits.joints, limits.mean_s)
+        factor = _too_quick(path, plans, found.x, limits.joints.period_s)
+        over = 1.0 if limits.cap is None else limits.cap.ratio(limits.cap.fine.expand(found.setpoints))
+        if over <= 1.0 and not (factor < 1.0).any():
+            break
+        slower *= factor
+        # between two points of the grid the tool may be a little faster than at both
+        under /= over * _FIRMLY if over > 1.0 else 1.0
+    return found
+
+
+def _too_quick(path: ChainPath, plans: Sequence[MovePlan], x: Array, period_s: float) -> Array:
+    """Return the share (K,) of its speed at which each move takes its TIME, 1 where it takes as long already."""
+    cycles = np.interp(path.ends, x, np.arange(len(x)))
+    lasts = np.diff(cycles) * period_s
+    wanted = np.array([0.0 if plan.duration_s is None else plan.duration_s for plan in plans])
+    # a cycle is as near as a motion in whole cycles can come
+    return np.where(lasts < wanted - period_s, lasts / np.maximum(wanted, period_s), 1.0)
+
+
+def _under_cap(path: ChainPath, cap: SpeedCap | None, share: float) -> Array | float:
+    """Return the largest b (M + 1,) at which tool point and flange keep to a share of a cap."""
+    if cap is None:
+        return math.inf
+    return np.asarray((share * cap.most * PLANNED / np.maximum(path.speeds(), 1e-9)) ** 2)
+
+
+def _corner(path: ChainPath, number: int, zone: float, x: Array) -> Corner:
+    """Return what became of a corner after move ``number`` of a path that is at x (N + 1,)."""
+    found = path.roundings[number]
+    middle = path.ends[number + 1]
+    inside = (x > middle - found.half) & (x < middle + found.half)
+    places = middle + found.half * np.linspace(-1.0, 1.0, 33)
+    q = np.concatenate([found.second.q_start[None], path.joints(places)])
+    points = matmul(path.arm.kinematics.forward(q), path.arm.X_flange_tool)[:, :3, 3]
+    off = np.sqrt(((points[1:] - points[0]) ** 2).sum(axis=1))
+    return Corner(radius=zone, cycles=int(np.count_nonzero(inside)), reach=float(off.max()), deviation=float(off.min()))
