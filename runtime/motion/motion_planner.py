@@ -23,9 +23,9 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array, frozen
 from runtime.core.units import MM, PERCENT
 from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, WristChange
-from runtime.motion.chaining import ChainLimits, Joined, joined
 from runtime.motion.chain.corner import Corner
 from runtime.motion.chain.timing import Limits
+from runtime.motion.chaining import ChainLimits, Joined, joined
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import RISE_S, JointPlanner
 from runtime.motion.path import Path
