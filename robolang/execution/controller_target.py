@@ -240,9 +240,9 @@ class ControllerTarget:
             return Left(activity=activity, motion=motion)
         at = activity.first + self.move_reached - activity.skipped
         rest = tuple(statements[at:])
-        rest[0].end_tick = self._record.controller.recorder.tick
-        # moves that have not begun come after what is done meanwhile
-        del statements[at + rest[0].begun :]
+        for run in [each for each in statements[activity.first : at + 1] if not each.ended]:
+            run.end_tick = self._record.controller.recorder.tick
+        del statements[at + rest[0].begun :]  # those that have not begun come after what is done meanwhile
         first, *others = map(copied, rest)
         if first.begun:
             note_rest(rest[0], self.q, self.world.around)

@@ -86,10 +86,13 @@ class _Refused(Record):
 
 
 def _read(path: Path, name: str, scale: float) -> "BodyMesh | _Refused":
-    from runtime.cell.body_mesh import read_body_mesh
-    from runtime.core.mesh_files import MeshError
-    from runtime.core.solid import NoSolidError
-
+    try:
+        from runtime.cell.body_mesh import read_body_mesh
+        from runtime.core.mesh_files import MeshError
+        from runtime.core.solid import NoSolidError
+    except ModuleNotFoundError as error:
+        # an install that checks text has no numerics: the other programs of the folder are checked all the same
+        return _Refused(code="RBL643", why=f"cannot be read: that needs {error.name}, which is not installed")
     try:
         return read_body_mesh(path, name, scale)
     except MeshError as error:

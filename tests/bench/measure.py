@@ -191,11 +191,13 @@ def placed(session: Session) -> Row:
 
 
 def planned(session: Session, result: RunResult) -> Row:
-    """Return how far the set-points of all moves are off their lines."""
+    """Return how far all moves are off their lines where the command passes the plan, every 8 ms."""
     worst = 0.0
     for run in session.record.statements:
         if run.path is not None:
-            q = result.log["q_plan"][result.log["line"] == run.origin.line]
+            # the command passes the plan two cycles after its set-points are sent
+            sent = np.flatnonzero(result.log["line"] == run.origin.line)
+            q = result.log["q_cmd"][np.minimum(sent + 16, len(result.log["t"]) - 1)][::8]
             worst = max(worst, run.path.deviation(session.controller.tool_poses(q)[:, :3, 3]).max(), key=badness)
     return Row(
         figure="planned path of every MOVE off its line, at the 8 ms set-points",

@@ -46,7 +46,7 @@ def ran(tmp_path, text):
 def speeds(session, result, line):
     """The largest speeds of the move of a line: each joint rad/s, tool m/s, turning rad/s."""
     log = result.log
-    q = log["q_plan"][log["number"] == line][::8]
+    q = log["q_cmd"][log["number"] == line][::8]
     X = session.controller.tool_poses(q)
     turn = np.einsum("kji,kjl->kil", X[:-1, :3, :3], X[1:, :3, :3])
     angle = np.arccos(np.clip((np.trace(turn, axis1=1, axis2=2) - 1.0) / 2.0, -1.0, 1.0))
@@ -101,16 +101,17 @@ def test_a_time_becomes_longer(tmp_path):
 
 
 def test_an_override_that_changes_within_a_chain(tmp_path):
-    """Each move has its own; where two blend the smaller one holds. The arm does not stop for it."""
+    """Each move has its own; in a corner the speed goes over from one to the other. The arm does not stop for it."""
     text = (
         f"5 {HAND}\n10 MOVEJ P1\n20 MOVEJ P1 + (0, 200, 0), ZONE 50\n30 OVERRIDE 20\n"
         "40 MOVEJ P1 + (0, 200, 150), ZONE 50\n50 OVERRIDE 100\n60 MOVEJ P1 + (0, 0, 150)\n"
     )
     session, result = ran(tmp_path, text)
     log, limits = result.log, session.project.cell.robot.per_axis("limits", "speed")
-    share = {line: (np.abs(log["dq_cmd"][log["number"] == line]) / limits).max() for line in (20, 40, 60)}
-    assert share[40] <= 0.2 * 1.001
-    assert min(share[20], share[60]) > 0.3
+    of = {line: (np.abs(log["dq_cmd"][log["number"] == line]) / limits).max(axis=1) for line in (20, 40, 60)}
+    middle = len(of[40]) // 2
+    assert of[40][middle - 50 : middle + 50].max() <= 0.2 * 1.001
+    assert min(of[20].max(), of[60].max()) > 0.3
     between = (log["number"][1:] != log["number"][:-1]) & np.isin(log["number"][1:], (40, 60))
     standing = np.abs(log["dq_cmd"][1:][between]).max(axis=1)
     assert (standing > 1e-3).all()

@@ -138,7 +138,9 @@ def test_the_hand_held_the_part_and_let_it_go(session, result):
 
 def planned_tool_points(result: RunResult, number: int) -> Array:
     kinematics = Kinematics(builtin_cell().robot)
-    q = np.unique(result.log["q_plan"][ticks(result, number)], axis=0)
+    # the command passes the plan two cycles after its set-points are sent
+    passed = np.minimum(ticks(result, number) + 16, len(result.log["t"]) - 1)
+    q = np.unique(result.log["q_cmd"][passed][::8], axis=0)
     return (kinematics.forward(q) @ builtin_cell().hand.X_flange_tool)[:, :3, 3]
 
 
