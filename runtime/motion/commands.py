@@ -2,7 +2,7 @@
 
 Three kinds: straight (``MoveLinear``), on an arc (``MoveArc``), all joints together (``MoveJoint``). All have:
 ``duration`` s from start to stop (None: as fast as speed and limits allow); ``zone`` m, the radius about its end within
-which it may go over into the next move of a chain (``runtime.motion.chain.corner``), 0: it stops there; ``q_end`` (n,) rad,
+which it may go over into the next move (``runtime.motion.chain.corner``), 0: it stops there; ``q_end`` (n,) rad,
 the taught joint angles of the end, turns and all; None where only its pose is taught, then with the words of
 ``configuration`` and the ``turns`` of the joints that the point names. What the robot cannot do is refused by the
 planner (RBL4xx); a zone or an override out of range, and a joint move without an end, are misuse and raise

@@ -60,7 +60,6 @@ EXTREMES = {
     "robolang/cli/commands/export.py: max((move['highest_hz'] for move in moves), default=0)": WHOLE,
     "robolang/experiments/compare.py: max(settled, float(t[stop + outside[-1] + 1] - t[stop]))": "times of ticks",
     "robolang/pulse_tables/plots.py: max(float(x[-1] - x[0]), 1e-09)": "a width of a drawing",
-    "runtime/motion/motion_planner.py: max(before.acceleration, after.acceleration)": PLANNED,
     "runtime/pulses/mechanism.py: min(joint.acceleration, _FAST)": FILE,
     "runtime/pulses/mechanism.py: min(joint.speed, _FAST)": FILE,
     "runtime/pulses/move.py: min(limits.speed, math.sqrt(limits.acceleration))": PLANNED,

@@ -8,6 +8,7 @@ from typer.testing import CliRunner
 
 import robolang
 from robolang.cli.main import app
+from robolang.execution import run_bounds
 from robolang.execution.session import Session
 from robolang.syntax.keywords import INSTRUCTIONS
 from runtime.robot.files.imported import FEWEST_AXES, MOST_AXES
@@ -72,15 +73,20 @@ def configurations(text, folder):
     assert [item.code for item in refused.value.diagnostics] == ["RBL412"]
 
 
-def blending(text, folder):
-    """A line of 200 mm in 20 pieces with zones as long as they are takes at least half as long again as one move."""
+def chains(text, folder):
+    """A line of 200 mm in 20 pieces takes no longer than one move, and longer where fewer of them are one path."""
 
     def line(*stations):
         poses = [f"POSE(900, {y}, 900, 180, 0, 180)" for y in (-100, *stations)]
         moves = [f"MOVE {each}, SPEED 200, ZONE 10" for each in poses[1:]]
         return sum(each["duration_s"] for each in run(folder, f"MOVEJ {poses[0]}", *moves).report["statements"][1:])
 
-    assert line(*range(-90, 101, 10)) > 1.5 * line(100)
+    assert f"Up to {run_bounds.MAX_CHAIN} moves" in text
+    pieces = range(-90, 101, 10)
+    assert 0.95 * line(100) < line(*pieces) <= line(100)
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(run_bounds, "MAX_CHAIN", 10)
+        assert line(*pieces) > line(100) + 0.05
 
 
 def stops(text, folder):
@@ -93,7 +99,7 @@ def language(text, folder):
     assert not INSTRUCTIONS & {"INTERRUPT", "TASK", "CYCLE"}
 
 
-CHECKS = (estimates, friction_is_known, rigid_links, robots, configurations, blending, stops, language)
+CHECKS = (estimates, friction_is_known, rigid_links, robots, configurations, chains, stops, language)
 NOTHING_TO_HOLD_AGAINST = {"No safety function", "Seams"}
 """What the product is for, and what nobody can know before a move."""
 

@@ -54,7 +54,7 @@ KINDS = ("speed", "range", "stop", "rest", "alarm", "refused")
 class Stop:
     """A stop in a log: the cycle that has to send the first row of it, and the end of the jog.
 
-    ``planned`` (n,): the row of the plan for that cycle, ``before`` (n,): the one before it, ``left``: rows from it on.
+    ``planned`` (n,): where the plan is with that cycle, ``before`` (n,): the one before it, ``left``: rows from it on.
     """
 
     cycle: int
@@ -135,12 +135,22 @@ def play(robot, plan, stop_s, late=0):
     while robot.moving and not robot.alarms:
         if cycles == due and cycles < len(plan.rows):
             before = plan.rows[cycles - 1] if cycles else np.array(robot.areas.ina)
-            stop = Stop(cycle=first + cycles, planned=plan.rows[cycles], before=before, left=len(plan.rows) - cycles)
+            stop = Stop(
+                cycle=first + cycles,
+                planned=passed(plan.rows, cycles, before),
+                before=before,
+                left=len(plan.rows) - cycles,
+            )
         if cycles >= due + late:
             robot.hold()
         robot.cycle()
         cycles += 1
     return _ended(robot, stop)
+
+
+def passed(rows, k, before):
+    """Where the command is with set-point k of rows, after the set-point ``before``."""
+    return (before + 4.0 * rows[k] + rows[min(k + 1, len(rows) - 1)]) / 6.0
 
 
 def _ended(robot, stop):
@@ -179,7 +189,7 @@ def hold_key(robot, plan, times, ended):
         if cycles == due and cycles < len(plan.rows):
             stop = Stop(
                 cycle=first + cycles,
-                planned=plan.rows[cycles],
+                planned=passed(plan.rows, cycles, plan.rows[cycles - 1]),
                 before=plan.rows[cycles - 1],
                 left=len(plan.rows) - cycles,
             )
@@ -208,7 +218,7 @@ def check(robot, stops, physics):
     rows = log["q_plan"][::ticks]
     for stop in stops:
         way = stop.planned - stop.before
-        gone = rows[stop.cycle] - stop.before
+        gone = passed(rows, stop.cycle, rows[stop.cycle - 1]) - stop.before
         # before the planned one along its step: the joint that turns most in it has turned less
         axis = int(np.argmax(np.abs(way)))
         early = abs(gone[axis]) < abs(way[axis]) and gone[axis] * way[axis] >= 0.0

@@ -123,7 +123,7 @@ def _room(piece: Piece, zone: float, arm: Arm, *, at_end: bool) -> float:
     path = piece.path
     if piece.keeps_posture and path is not None:
         # on an arc the chord is shorter than the arc, so this is less than there is
-        return most if path.length <= 0.0 else min(most, zone * piece.extent / path.length)
+        return most if path.length <= 0.0 else float(np.minimum(most, zone * piece.extent / path.length))
     shares = np.linspace(0.0, 0.5, 65)
     s = 1.0 - shares[::-1] if at_end else shares
     q = piece.joints(s, np.broadcast_to(piece.q_end if at_end else piece.q_start, (len(s), len(piece.q_start))))
@@ -153,6 +153,6 @@ def _holds(found: Rounding, zone: float, arm: Arm) -> bool:
         return False
     meets = found.first.joints(np.array([1.0 - found.half / found.first.extent]), near[:1])[0]
     joins = found.second.joints(np.array([found.half / found.second.extent]), near[:1])[0]
-    if not max(np.abs(q[0] - meets).max(), np.abs(q[-1] - joins).max()) <= _SAME:
+    if not np.maximum(np.abs(q[0] - meets).max(), np.abs(q[-1] - joins).max()) <= _SAME:
         return False
     return bool((_distances(arm, np.concatenate([corner[None], q])) <= zone * (1.0 + 1e-9)).all())

@@ -11,6 +11,7 @@ import numpy as np
 
 from runtime.core.frames import Array, inverse
 from runtime.core.linear import matmul
+from runtime.core.units import badness
 from runtime.motion.path import Path
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.velocity_profile import SpeedLimits
@@ -81,7 +82,7 @@ def extent_of(path: Path | None, q_start: Array, q_end: Array, kinematics: Kinem
     turn = float(np.abs(q_end - q_start).max()) * ROOM
     if path is not None:
         # where the tool stays in place and keeps its posture, the wrist alone turns
-        return max(path.length, path.angle * ROOM, turn if path.length <= 0.0 else 0.0)
+        return max(path.length, path.angle * ROOM, turn if path.length <= 0.0 else 0.0, key=badness)
     q = q_start + np.linspace(0.0, 1.0, 17)[:, None] * (q_end - q_start)
     flange = kinematics.forward(q)[:, :3, 3]
-    return max(float(np.linalg.norm(np.diff(flange, axis=0), axis=1).sum()), turn)
+    return max(float(np.linalg.norm(np.diff(flange, axis=0), axis=1).sum()), turn, key=badness)

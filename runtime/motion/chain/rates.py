@@ -107,7 +107,7 @@ def _backwards(steps: Array, span: _Range, end: float) -> Array:
 def _forwards(steps: Array, span: _Range, reachable: Array, start: float) -> Array:
     """Return the largest b (M + 1,) that is gained from ``start`` within what is ``reachable``."""
     found = np.empty(len(reachable))
-    value = found[0] = min(start, float(reachable[0]))
+    value = found[0] = float(np.minimum(start, reachable[0]))
     limit, widths = reachable.tolist(), (1.0 / steps).tolist()
     for k, width in enumerate(widths):
         u = float((span.least[k] - span.above[k] * value).min())

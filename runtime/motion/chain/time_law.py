@@ -76,8 +76,9 @@ class TimeLaw:
             inside = np.clip(at, 0.0, self.seconds)
             k, passed = self._segment(inside)
             within = whole[k] + off[k] * passed + self.v[k] * passed**2 / 2.0 + gain[k] * passed**3 / 6.0
-            beyond = np.where(at < 0.0, off[0] * at, off[-1] * (at - inside))
-            return np.asarray(within + beyond)
+            # it stands before its start and after its end
+            at_rest = np.where(at < 0.0, off[0] * at, off[-1] * (at - inside))
+            return np.asarray(within + at_rest)
 
         return np.asarray(origin + (integral(times) - integral(times - mean_s)) / mean_s)
 
@@ -121,9 +122,11 @@ def _cut(x: Array, v: Array, first: int, last: int, mean_s: float) -> None:
         before = float(v[first - 1]) if first > 0 else 0.0
         after = float(v[last + 1]) if last < end else 0.0
         # a level between two points of the grid: what is above it may be wider than these points, never less wide
-        level = max(before, after, min(level, float(x[last] - x[first]) / mean_s))
-        if level > max(before, after):
+        beside, fits = max(before, after), float(x[last] - x[first]) / mean_s
+        if fits > beside:
+            level = fits
             break
+        level = beside
         if first > 0 and before >= after:
             first -= 1
         else:

@@ -21,6 +21,7 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
+from runtime.core.units import badness
 from runtime.motion.chain.rates import Bounds, rates
 from runtime.motion.chain.time_law import TimeLaw, eased, narrow
 from runtime.motion.fine_interpolator import through
@@ -105,7 +106,7 @@ def _timed(path: Path, limits: Limits, mean_s: float, share: float) -> Timed:
         found = _along(path, law.sampled(limits.period_s, mean_s))
         fast, gaining, jerk = limits.passed(found.setpoints)
         pace = _pace(path, found.x, limits.period_s)
-        if max(float(each.max()) for each in (fast, gaining, jerk, pace)) <= _SLACK:
+        if max((float(each.max()) for each in (fast, gaining, jerk, pace)), key=badness) <= _SLACK:
             return found
         firm = 1.0 if round_ < _FIRMER else 1.0 + 0.25 * (round_ - _FIRMER + 1)
         _lower(path.x, speed, found.x, np.maximum(fast.max(axis=1), pace), (1, around), firm)
@@ -187,7 +188,8 @@ def _slowed(path: Path, limits: Limits, law: TimeLaw, mean_s: float) -> Timed:
         check_duration(slower.seconds + mean_s)
         found = _along(path, slower.sampled(limits.period_s, mean_s))
         shares = limits.passed(found.setpoints)
-        worst = max(float(each.max()) ** (1.0 / power) for power, each in enumerate(shares, start=1))
+        over = (float(each.max()) ** (1.0 / power) for power, each in enumerate(shares, start=1))
+        worst = max(over, key=badness)
         if worst <= _SLACK:
             return found
         factor *= max(worst, _WHOLE)
