@@ -344,10 +344,10 @@ class ControllerTarget:
 
     def _warn(self, chain: Sequence[Requested], plan: ChainPlan) -> None:
         """Warn where the motion is not the one that the program states, once for a code and a statement."""
-        plans = [part.plan for part in plan.parts]
-        rows = zip(chain, plans, (*plan.corners, None), (*plans[1:], None), strict=True)
-        for each, own, corner, after in rows:
-            move = PlannedMove(effect=each.effect, command=each.command, plan=own, corner=corner, after=after)
+        nexts = [*(part.plan for part in plan.parts[1:]), None]
+        for each, own, corner, after in zip(chain, plan.parts, (*plan.corners, None), nexts, strict=True):
+            effect, command = each.effect, each.command
+            move = PlannedMove(effect=effect, command=command, plan=own.plan, s=own.s, corner=corner, after=after)
             for found in self._findings.of(move):
                 origin = each.effect.origin
                 if (found.code, origin) not in self._warned:

@@ -38,12 +38,15 @@ shows; the programs of ``programs/`` stay below 1.02, and moves slowed a little 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannedMove:
-    """A move with its plan. ``corner`` and ``after``: the blend at its end and the plan of the next move, None: it
-    stops there."""
+    """A move with its plan, and ``s`` (K,), the share of its path at its rows, alone or in a chain.
+
+    ``corner`` and ``after``: the corner at its end and the plan of the next move, None: it stops there.
+    """
 
     effect: MoveTo
     command: Command
     plan: MovePlan
+    s: Array
     corner: Corner | None = None
     after: MovePlan | None = None
 
@@ -142,7 +145,7 @@ class PlanFindings:
     def slowed(self, move: PlannedMove) -> Found:
         """Find a TIME that is not kept, and a SPEED that is not reached for another reason than a short path."""
         effect, period_s, override = move.effect, self._profile.period_s, move.plan.override
-        takes_s = (len(move.plan.q) - 1) * period_s
+        takes_s = (len(move.s) - 1) * period_s
         under = f" under OVERRIDE {effect.override_pct:g}" if effect.override_pct != 100.0 else ""
         if effect.time_s is not None:
             # under OVERRIDE 50 a TIME of 2 s is to take 4 s
@@ -171,7 +174,7 @@ class PlanFindings:
                 )
 
     def _ruling(self, move: PlannedMove) -> Ruling:
-        return ruling(move.plan, move.command, self._spec, self._profile)
+        return ruling(move.plan, move.s, move.command, self._spec, self._profile)
 
     def zone(self, move: PlannedMove) -> Found:
         """Find a zone that leaves no room for the blends at both ends of a move, or in which the arm stops."""

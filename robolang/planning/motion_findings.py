@@ -148,6 +148,7 @@ class _Moves:
             effect=move.effect,
             command=move.command,
             plan=move.plan,
+            s=move.s,
             corner=move.corner,
             after=None if move.corner is None or after is None else after.plan,
         )

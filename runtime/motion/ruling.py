@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from runtime.core.frames import Array
 from runtime.core.units import DEG, MM
 from runtime.motion.cartesian_planner import MovePlan, arc_limits
 from runtime.motion.commands import Command, MoveJoint
@@ -34,9 +35,9 @@ _HALVINGS = 40
 class Ruling:
     """The limit that rules a move: ``why`` in words, and ``remedy``, what would help.
 
-    ``programmed_s``: the time that its speed alone would take; ``peak`` m/s: the largest speed of the tool point
-    in the plan. ``keeps`` m/s: a speed that alone would take as long as the plan does, 0 where a joint rules, which may
-    rule at that speed as well. All are 0 for a move whose tool point has no path, or hardly one.
+    ``programmed_s``: the time that its speed alone would take; ``peak`` m/s: the largest speed of the tool point as it
+    is carried out. ``keeps`` m/s: a speed that alone would take as long, 0 where a joint rules, which may rule at that
+    speed as well. All are 0 for a move whose tool point has no path, or hardly one.
     """
 
     why: str
@@ -82,8 +83,11 @@ class _Times:
         return self.takes(path.length, speed, self.limits.acceleration, self.limits.jerk)
 
 
-def ruling(plan: MovePlan, command: Command, spec: RobotSpec, profile: Profile) -> Ruling:
-    """Return what rules a plan of a move that has something to do; ``Fault`` RBL404 as its planner raises it."""
+def ruling(plan: MovePlan, s: Array, command: Command, spec: RobotSpec, profile: Profile) -> Ruling:
+    """Return what rules a plan of a move that has something to do; ``Fault`` RBL404 as its planner raises it.
+
+    s (K,): the share of its path that is passed at each of its rows, alone or in a chain.
+    """
     path = plan.path
     if path is None or isinstance(command, MoveJoint):
         return _of_joints(plan, spec)
@@ -102,8 +106,8 @@ def ruling(plan: MovePlan, command: Command, spec: RobotSpec, profile: Profile) 
         remedy = f"move the path away from where J{slowdown.axis + 1} has to turn fast, or go there with MOVEJ"
     if not moves:
         return Ruling(why=why, remedy=remedy)
-    peak = float(np.diff(plan.s).max(initial=0.0)) * path.length / profile.period_s
-    seconds = (len(plan.q) - 1) * profile.period_s
+    peak = float(np.diff(s).max(initial=0.0)) * path.length / profile.period_s
+    seconds = (len(s) - 1) * profile.period_s
     keeps = 0.0 if of_joint else _slower(lambda speed: times.along(path, speed), times.speed, seconds)
     return Ruling(why=why, remedy=remedy, programmed_s=programmed_s, peak=peak, keeps=keeps)
 

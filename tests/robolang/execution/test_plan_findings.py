@@ -179,3 +179,17 @@ def test_the_programs_that_come_along_say_nothing(program):
     project = load_project(program)
     assert [item for item in findings(project, rehearse(project)) if item.code in OTHERWISE] == []
     assert SLOWED > 1.02
+
+
+def test_a_time_in_a_chain_is_compared_with_what_the_move_takes_there(tmp_path):
+    """Alone the move would stop at both ends."""
+    text = (
+        START.format(0)
+        + "P = HERE\nMOVE P + (0, 60, 0), SPEED 200, ZONE 10\nMOVE P + (0, 160, 0), TIME 0.15, ZONE 10\n"
+    )
+    code, line, message, _ = only(tmp_path, text + "MOVE P + (0, 160, 60), SPEED 200\n")
+    project = load_project(tmp_path / "p.rbl")
+    move = next(each for each in rehearse(project).moves if each.effect.line == line)
+    assert code == "RBL429"
+    assert numbers(message)[0] == pytest.approx((len(move.s) - 1) * 0.008, abs=1e-9)
+    assert len(move.s) < len(move.plan.q)
