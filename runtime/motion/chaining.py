@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.motion.cartesian_planner import MovePlan
@@ -56,29 +57,32 @@ class Joined:
     corners: tuple[Corner, ...]
 
 
+@dataclass(frozen=True, slots=True, kw_only=True)
+class _Run:
+    """The rows of moves between two stops, as in ``Joined``, with ``number`` counted from the first of them."""
+
+    q: Array
+    setpoints: Array
+    number: NDArray[np.intp]
+    share: Array
+    corners: tuple[Corner, ...] = ()
+
+
 def joined(plans: Sequence[MovePlan], zones: Sequence[float], arm: Arm, limits: ChainLimits) -> Joined:
     """Return moves as one motion, rounded in the zones (m) at their ends, the last of which stops."""
     roundings = [_rounding(*pair, arm) for pair in zip(plans, plans[1:], zones, strict=False)]
-    q, setpoints = [plans[0].q[:1]], [plans[0].q[:1]]
-    command, share = [np.zeros(1, dtype=np.int32)], [np.zeros(1)]
+    start = plans[0].q[:1]
+    q, setpoints, command, share = [start], [start], [np.zeros(1, dtype=np.int32)], [np.zeros(1)]
     corners: list[Corner] = []
     for first, last in _between_stops(roundings, len(plans)):
-        run = plans[first : last + 1]
-        if first == last:
-            rows, sent, number, passed = run[0].q, run[0].setpoints, np.zeros(len(run[0].q), dtype=int), run[0].s
-        else:
-            path = ChainPath(arm, [_piece(plan) for plan in run], [_there(each) for each in roundings[first:last]])
-            found = _timed(path, run, limits)
-            rows, sent = found.q, found.setpoints
-            number = path.move_at(found.x)
-            passed = path.share_at(found.x)
-            corners += [_corner(path, k, zones[first + k], found.x) for k in range(last - first)]
-        q.append(rows[1:])
-        setpoints.append(sent[1:])
-        command.append((number[1:] + first).astype(np.int32))
-        share.append(passed[1:])
-        if last < len(plans) - 1:
-            corners.append(Corner(radius=zones[last]))
+        at = first
+        for run in _runs(plans[first : last + 1], roundings[first:last], zones[first:last], arm, limits):
+            q.append(run.q[1:])
+            setpoints.append(run.setpoints[1:])
+            command.append((run.number[1:] + at).astype(np.int32))
+            share.append(run.share[1:])
+            at += len(run.corners) + 1
+            corners += [*run.corners, *(Corner(radius=zone) for zone in zones[at - 1 : at])]
     whole = np.concatenate(command)
     lasts = np.searchsorted(whole, np.arange(len(plans)), side="right") - 1
     whole[-1] = len(plans) - 1  # also where the last moves end where they start
@@ -88,8 +92,34 @@ def joined(plans: Sequence[MovePlan], zones: Sequence[float], arm: Arm, limits: 
         command=whole,
         share=np.concatenate(share),
         lasts=tuple(np.maximum(lasts, 0).tolist()),
-        corners=tuple(corners),
+        corners=tuple(corners[: len(plans) - 1]),
     )
+
+
+def _runs(
+    plans: Sequence[MovePlan],
+    roundings: Sequence[Rounding | None],
+    zones: Sequence[float],
+    arm: Arm,
+    limits: ChainLimits,
+) -> list[_Run]:
+    """Return moves between two stops as one path; as moves that stop where it cannot be timed, or takes longer."""
+    alone = [
+        _Run(q=plan.q, setpoints=plan.setpoints, number=np.zeros(len(plan.q), dtype=np.intp), share=plan.s)
+        for plan in plans
+    ]
+    if len(plans) == 1:
+        return alone
+    path = ChainPath(arm, [_piece(plan) for plan in plans], [_there(each) for each in roundings])
+    try:
+        found = _timed(path, plans, limits)
+    except Fault:
+        return alone
+    if len(found.x) - 1 > sum(len(plan.q) - 1 for plan in plans):
+        return alone
+    corners = tuple(_corner(path, k, zone, found.x) for k, zone in enumerate(zones))
+    number, share = path.move_at(found.x), path.share_at(found.x)
+    return [_Run(q=found.q, setpoints=found.setpoints, number=number, share=share, corners=corners)]
 
 
 def _rounding(first: MovePlan, second: MovePlan, zone: float, arm: Arm) -> Rounding | None:

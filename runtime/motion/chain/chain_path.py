@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 from runtime.core.frames import Array, rotation_angles
 from runtime.core.linear import matmul
@@ -20,6 +21,8 @@ from runtime.motion.chain.rates import Bounds
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.speed_cap import speeds
 
+_AT_REST = 0.5 ** np.arange(12, 0, -1)
+"""Shares of the first and of the last step of the grid at which there are points, too."""
 _NOTHING = 1e-9
 """A section of less, m, is left out: two corners that meet in the middle of a move."""
 _IN_CORNER = 14
@@ -65,9 +68,10 @@ class ChainPath:
         q[x <= 0.0], q[x >= self.length] = start, end
         return q
 
-    def move_at(self, x: Array) -> Array:
+    def move_at(self, x: Array) -> NDArray[np.intp]:
         """Return the number (N,) of the piece to which places x (N,) belong; a corner is half of either."""
-        return np.clip(np.searchsorted(self.ends, x, side="right") - 1, 0, len(self.pieces) - 1)
+        number = np.searchsorted(self.ends, x, side="right") - 1
+        return np.asarray(np.clip(number, 0, len(self.pieces) - 1), dtype=np.intp)
 
     def share_at(self, x: Array) -> Array:
         """Return how much (N,) of its piece is passed at places x (N,)."""
@@ -82,7 +86,10 @@ class ChainPath:
             if not end - begin > _NOTHING:
                 continue
             grid.append(np.linspace(begin, end, self._steps(k, end - begin) + 1)[1:])
-        return np.concatenate(grid)
+        whole = np.concatenate(grid)
+        # u is constant from point to point, so a slow speed is gained within a step only if steps at rest are short
+        near = _AT_REST * np.array([[whole[1] - whole[0]], [whole[-1] - whole[-2]]])
+        return np.concatenate([whole[:1], whole[0] + near[0], whole[1:-1], (whole[-1] - near[1])[::-1], whole[-1:]])
 
     def _steps(self, section: int, length: float) -> int:
         if section % 2:

@@ -325,3 +325,19 @@ def test_where_overrides_differ_the_speed_goes_over_in_the_corner(kind, override
 def test_an_override_that_is_no_share_is_misuse(override):
     with pytest.raises(ValueError, match="share"):
         MoveJoint(q_end=np.zeros(6), override=override)
+
+
+def test_a_chain_that_cannot_be_timed_stops_at_its_corners(monkeypatch):
+    robot = bench("puma560")
+    commands = by(robot, *RIGHT_ANGLE, zone=0.03, speed=0.4)
+
+    def refused(*_):
+        raise Fault("RBL404", "test")
+
+    monkeypatch.setattr("runtime.motion.chaining.timed", refused)
+    found = chain(robot, commands)
+    assert [corner.cycles for corner in found.corners] == [0]
+    assert found.corners[0].radius == 0.03
+    plans = [part.plan.q for part in found.parts]
+    np.testing.assert_array_equal(found.q, np.concatenate([plans[0], plans[1][1:]]))
+    assert [part.last - part.first for part in found.parts] == [len(rows) - 1 for rows in plans]
