@@ -31,6 +31,10 @@ from runtime.robot.kinematics.kinematics import Kinematics
 
 NOTICED = 0.1 * DEG
 """A tool or a joint that is turned less from where it should be keeps it, rad."""
+SHARP = 10.0 * DEG
+"""Paths that turn by less at a corner are pieces of one curve: smaller blends do not slow the tool, rad."""
+_NEAR = 1e-3
+"""Share of a path over which its direction is taken."""
 SLOWED = 1.2
 """A move that takes this many times as long as its SPEED alone needs is named. A bead is then a fifth thicker, which
 shows; the programs of ``programs/`` stay below 1.02, and moves slowed a little by a joint are no fault."""
@@ -197,14 +201,17 @@ class PlanFindings:
             yield from self._short_path(move.plan, corner, after)
 
     def _short_path(self, before: MovePlan, corner: Corner, after: MovePlan) -> Found:
-        """Find a zone that is more than half of a path at its corner: two blends would not fit on that."""
+        """Find a zone that is more than half of a path at its corner: two blends would not fit on that.
+
+        Where the paths go on nearly straight, as the pieces of a curve do, the tool is not kept from its speed by it.
+        """
         paths = [
             (plan.path.length, which)
             for plan, which in ((before, "to"), (after, "from"))
             if plan.path is not None and not plan.path.length <= 0.0
         ]
         # for MOVEJ no length is known; 1e-9 m: a zone of exactly half the path is not more than half
-        if len(paths) == 2 and not corner.radius <= 0.5 * min(paths)[0] + 1e-9:
+        if len(paths) == 2 and not _bend(before, after) < SHARP and not corner.radius <= 0.5 * min(paths)[0] + 1e-9:
             short, which = min(paths)
             yield PlanFinding(
                 code="RBL414",
@@ -212,6 +219,14 @@ class PlanFindings:
                 f"{short / MM:.1f} mm: the blend begins and ends within "
                 f"{corner.reach / MM:.1f} mm",
             )
+
+
+def _bend(before: MovePlan, after: MovePlan) -> float:
+    """Return the angle, rad, between the end of one path and the start of the next."""
+    assert before.path is not None and after.path is not None
+    ends = before.path.points(np.array([1.0 - _NEAR, 1.0])), after.path.points(np.array([0.0, _NEAR]))
+    first, second = (points[1] - points[0] for points in ends)
+    return float(np.arctan2(np.linalg.norm(np.cross(first, second)), (first * second).sum()))
 
 
 def _zone(corner: Corner) -> str:

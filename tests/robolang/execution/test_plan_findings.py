@@ -136,6 +136,14 @@ def test_a_zone_in_which_the_arm_stops_is_named(tmp_path):
     assert {"20", "mm"} <= fields(message)
 
 
+@pytest.mark.parametrize(("step", "codes"), [((0, 10, 0), []), ((0.5, 10, 0), []), ((5, 10, 0), ["RBL414"])])
+def test_pieces_of_a_curve_may_have_zones_as_long_as_they_are(tmp_path, step, codes):
+    """They turn by 0, 2.9 and 26.6 deg: only a corner that slows the tool wants room."""
+    moves = "MOVE A + (0, 10, 0), ZONE 10\nMOVE A + ({}, {}, {})\n".format(*np.add((0, 10, 0), step))
+    found = both(tmp_path, START.format(0) + "SPEED 200\nA = HERE\n" + moves)
+    assert [code for code, *_ in found] == codes
+
+
 def test_a_pose_taught_with_a_configuration_that_a_kept_wrist_does_not_reach_is_named(tmp_path):
     """The same pose with the wrist the other way round: WRIST KEEP passes over what the point says of it."""
     q = np.radians([0.0, 60.0, -190.0, 0.0, -50.0, 0.0])
