@@ -191,7 +191,7 @@ class PlanFindings:
                     message="the arm stops at the end of this move: moves under a seam sensor do not blend",
                     hint="Write FINE, or SEAM OFF before the move.",
                 )
-        elif corner.cycles == 0:
+        elif not corner.reach > 0.0:
             yield PlanFinding(
                 code="RBL414",
                 message=f"{_zone(corner)} leaves no room for a blend: the arm stops at the corner",
@@ -210,8 +210,8 @@ class PlanFindings:
             for plan, which in ((before, "to"), (after, "from"))
             if plan.path is not None and not plan.path.length <= 0.0
         ]
-        # for MOVEJ no length is known; 1e-9 m: a zone of exactly half the path is not more than half
-        if len(paths) == 2 and not _bend(before, after) < SHARP and not corner.radius <= 0.5 * min(paths)[0] + 1e-9:
+        # for MOVEJ no length is known; a zone of half the path is not more than half, with the decimals of its points
+        if len(paths) == 2 and not _bend(before, after) < SHARP and not corner.radius <= 0.505 * min(paths)[0]:
             short, which = min(paths)
             yield PlanFinding(
                 code="RBL414",

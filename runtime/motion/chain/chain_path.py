@@ -24,7 +24,8 @@ from runtime.motion.speed_cap import speeds
 _AT_REST = 0.5 ** np.arange(12, 0, -1)
 """Shares of the first and of the last step of the grid at which there are points, too."""
 _NOTHING = 1e-9
-"""A section of less, m, is left out: two corners that meet in the middle of a move."""
+_EVEN = 0.25
+"""Least share of a step beside it that a step of the grid has."""
 _IN_CORNER = 14
 _STEP_M = 0.004
 _LEAST_STEPS, _MOST_STEPS = 6, 240
@@ -83,9 +84,8 @@ class ChainPath:
         edges = np.append(self._sections, self.length)
         grid = [np.zeros(1)]
         for k, (begin, end) in enumerate(itertools.pairwise(edges.tolist())):
-            if not end - begin > _NOTHING:
-                continue
-            grid.append(np.linspace(begin, end, self._steps(k, end - begin) + 1)[1:])
+            if steps := self._steps(k, end - begin):
+                grid.append(np.linspace(begin, end, steps + 1)[1:])
         whole = np.concatenate(grid)
         # u is constant from point to point, so a slow speed is gained within a step only if steps at rest are short
         near = _AT_REST * np.array([[whole[1] - whole[0]], [whole[-1] - whole[-2]]])
@@ -101,7 +101,13 @@ class ChainPath:
         elif len(self.pieces) == 1 or section in (0, len(self._sections) - 1):
             least = _LONGEST_STEPS
         wanted = _LEAST_STEPS if isinstance(piece.curve, JointLine) else int(length / _STEP_M)
-        return max(least, min(_MOST_STEPS, wanted))
+        # what two corners leave of a move may be next to nothing: differences over it would be rounding
+        return min(max(least, min(_MOST_STEPS, wanted)), int(length / (_EVEN * self._step_beside(section))))
+
+    def _step_beside(self, section: int) -> float:
+        """Return the shorter step of the grid, m, in the corners beside a section; next to nothing without one."""
+        beside = self.roundings[max(section // 2 - 1, 0) : section // 2 + 1]
+        return min((2.0 * each.half / _IN_CORNER for each in beside), default=_NOTHING)
 
     def _solved(self) -> Array:
         """Return q (M + 1, n) on the grid, each point with the whole turns of the one before it."""

@@ -341,3 +341,20 @@ def test_a_chain_that_cannot_be_timed_stops_at_its_corners(monkeypatch):
     plans = [part.plan.q for part in found.parts]
     np.testing.assert_array_equal(found.q, np.concatenate([plans[0], plans[1][1:]]))
     assert [part.last - part.first for part in found.parts] == [len(rows) - 1 for rows in plans]
+
+
+@pytest.mark.parametrize("decimals", [2, 3, 4, 5, 6, 10])
+def test_zones_that_leave_next_to_nothing_of_a_move_keep_its_speed(decimals):
+    """A circle in pieces of 2 mm, whose lengths differ by the last decimal of their points."""
+    robot = bench("irb2400")
+    X = robot.tool(robot.home())
+    angles = np.arange(31) * 2.0 / 30.0
+    circle = np.round(30.0 * np.stack([0 * angles, np.sin(angles), 1.0 - np.cos(angles)], axis=1), decimals) * 1e-3
+    times = []
+    for zone in (0.0009, 0.001, 0.005):
+        commands = [
+            MoveLinear(X_world_tool=pose(X[:3, 3] + point, X[:3, :3]), speed=0.2, zone=zone) for point in circle[1:]
+        ]
+        times.append(len(robot.planner.chain(robot.home(), commands, TOOL).q) - 1)
+    assert max(times) <= min(times) + 2
+    assert max(times) * robot.profile.period_s < 0.060 / 0.2 + 0.15
