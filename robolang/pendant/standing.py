@@ -16,8 +16,10 @@ def place(live: "Live") -> str:
     if executor.is_over:
         return ENDED
     # a motion that is held has begun, and what is typed meanwhile comes before its rest
-    word = "next" if executor.displaced is None else "held in"
-    return f"{word}: {text_of(live, executor.origin)}"
+    if executor.displaced is None:
+        return f"next: {text_of(live, executor.origin)}"
+    # not what the program has come to: of moves that blend that is the last one
+    return f"held in: {text_of(live, executor.status.statement or executor.origin)}"
 
 
 def text_of(live: "Live", origin: "Origin | None") -> str:

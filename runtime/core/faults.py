@@ -143,6 +143,7 @@ class Fault(Exception):  # noqa: N818 - the field calls it a fault
         self.message = message
         self.hint = hint or lookup(code).remedy
         self.others: tuple[Fault, ...] = ()
+        self.add_note(f"help: {self.hint}")  # what Python prints below an exception that nobody catches
 
     @property
     def all(self) -> tuple["Fault", ...]:

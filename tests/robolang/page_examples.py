@@ -14,7 +14,7 @@ def example_2() -> None:
 
     plan = robolang.plan("programs/pick_and_place.rbl")
     slowest = max(plan.lines, key=lambda line: line.seconds)
-    print(f"{plan.seconds:.3f} s, most of it in line {slowest.number}: {slowest.seconds:.3f} s")
+    print(f"{plan.seconds:.3f} s, most of it in line {slowest.line}: {slowest.seconds:.3f} s")
     assert plan.ok
 
 
@@ -34,7 +34,7 @@ def example_4() -> None:
 
     text = "LOAD (0, 0, 60), 0.8\nHAND OFF\nMOVE P1\nHAND ON\nLOAD (0, 0, 95), {mass}\nMOVE P2\n"
     for mass in (2.0, 2.3):
-        result = robolang.run(robolang.Project.from_text(text.format(mass=mass)), physics=False)
+        result = robolang.run(robolang.Project.from_text(text.format(mass=mass)))
         print(mass, "kg declared:", round(result.report.tool_error_mm, 3), "mm")
 
 
