@@ -28,8 +28,8 @@ _SMALLEST_MOMENT = 1e-9
 """Rounding below this is none, kg m2."""
 _SWEEPS = 20
 """Jacobi's method converges quadratically: a 3x3 matrix needs four or five sweeps."""
-_GRAMS = 50.0
-"""A mass of this or more, kg, that a robot cannot carry may have been meant in g."""
+_GRAMS, _TIMES = 50.0, 10.0
+"""A mass of this or more, kg, and of so many times what a robot carries, may have been meant in g."""
 
 
 def load_fault(mass: float, cog: Sequence[float], inertia: Sequence[float] | None, rated: float) -> Fault | None:
@@ -46,8 +46,8 @@ def mass_fault(mass: float, rated: float | None) -> Fault | None:
         return Fault("RBL401", f"a payload of {mass:g} kg is not a mass")
     if rated is None or mass <= rated:
         return None
-    # the hint only where grams would make sense: 2300 for a robot of 4 kg, but not 5
-    grams = mass / 1000.0 <= rated and mass >= _GRAMS
+    # the hint only where grams would make sense: 2300 for a robot of 4 kg, but not 5, nor 60 for one of 49 kg
+    grams = mass / 1000.0 <= rated and mass >= _GRAMS and mass >= _TIMES * rated
     shown, most = beside(mass, rated)
     return Fault(
         "RBL402",

@@ -95,6 +95,11 @@ def test_a_mass_that_may_be_in_grams_is_said_in_kilograms(mass, hint):
     assert numbers(fault.hint) == hint
 
 
+def test_a_mass_that_is_a_little_too_large_is_not_taken_for_grams():
+    assert numbers(mass_fault(60.0, 49.0).hint) == []
+    assert numbers(mass_fault(490.0, 49.0).hint) == [490.0, 0.49]
+
+
 def test_what_cannot_be_declared_is_said_with_its_figures():
     assert numbers(mass_fault(-1.5, 2.5).message) == [-1.5]
     assert numbers(centre_fault((0.0, 1.5, 2.0)).message) == [2500.0, 2000.0]
