@@ -119,7 +119,7 @@ CONTROL = (
     ),
     Entry("MODULE", (RAPID,), "begins a module", note="a program is a file"),
     Entry("ENDMODULE", (RAPID,), "ends a module", note="a program is a file"),
-    Entry("ENDPROC", (RAPID,), ENDS, "ENDSUB"),
+    Entry("ENDPROC", (RAPID,), ENDS, "ENDSUB", note="the main program has no head, so that of PROC main is left out"),
     Entry("ENDFUNC", (RAPID,), ENDS, "ENDSUB"),
     Entry("ENDFCT", (KRL,), ENDS, "ENDSUB"),
     Entry("ENDFUNCTION ENDROUTINE", (OTHERS,), ENDS, "ENDSUB"),
@@ -149,7 +149,8 @@ CONTROL = (
     Entry("JMP", (TP,), GOTO, "GOTO *L1"),
     Entry("JUMP", (INFORM,), GOTO, "GOTO *L1"),
     # no statement leaves a loop here: a jump does, and its label is what the reader has to add
-    Entry("EXIT", (KRL, VPLUS, RAPID), "leaves a loop, in RAPID the program", _NO_LEAVE, note=_AFTER),
+    Entry("EXIT", (KRL, VPLUS), "leaves a loop", _NO_LEAVE, note=_AFTER),
+    Entry("EXIT", (RAPID,), "ends the program", "STOP"),
     Entry("BREAK", (UR, MELFA, VAL3, C), "leaves a loop", _NO_LEAVE, note=_AFTER),
     Entry("BREAK", (AS, VPLUS), "waits for the end of motion", note="what reads or acts waits for it here"),
     Entry("BREAK", (RAPID,), "ends the program", "STOP"),
@@ -161,13 +162,19 @@ CONTROL = (
     Entry(
         "CYCLE", (OTHERS,), "begins the next round", "GOTO *NEXTROUND", note="the label is before the end of the loop"
     ),
-    Entry("REPEAT", (KRL, KAREL), "begins a loop with its condition at the end", "WHILE IN(1) = 0"),
+    Entry(
+        "REPEAT",
+        (KRL, KAREL),
+        "begins a loop with its condition at the end",
+        "WHILE IN(1) = 0",
+        note="WHILE has the condition to go on, WEND is the end",
+    ),
     Entry(
         "UNTIL",
         (KRL, KAREL, VAL3, AS, VPLUS),
         "ends a loop",
-        "WHILE IN(1) = 0",
-        note="WHILE has the condition to go on",
+        "WEND",
+        note="the condition to go on, here its opposite, is at the WHILE",
     ),
     Entry("DO", (AS, VPLUS, VAL3, PAC), "begins a loop", "WHILE IN(1) = 0", note="WHILE has the condition to go on"),
     Entry("LOOP", (PAC,), "ends a loop", "WEND"),

@@ -16,7 +16,7 @@ FRESH = (
     Line("KRL", "PULSE($OUT[5],TRUE,0.3)", "", ("PULSE 5, 0.3",)),
     Line("KRL", "$BASE=BASE_DATA[4]", "", ("FRAME frame4", "[frames.frame4]")),
     Line("KRL", "INTERRUPT DECL 21 WHEN $IN[4]==TRUE DO stop_now()", "", ("there is none", "IF IN(1) = 1 THEN GOTO")),
-    Line("KRL", "UNTIL cnt==5", "", ("for example WHILE",)),
+    Line("KRL", "UNTIL cnt==5", "", ("write WEND",)),
     Line("KRL", "IF $IN[3]==FALSE THEN", "", ("IF IN(3) = 0 THEN",)),
     Line("KRL", "CIRC P5, P6, CA 180", "", ("MOVEC P5, P6", "CA 180")),
     Line("KRL", "TRIGGER WHEN DISTANCE=0 DELAY=50 DO $OUT[9]=TRUE", "", ("there is none", "OUT(1) = 1")),
