@@ -1,14 +1,13 @@
-"""Chains of moves: each planned where the one before ends, neighbours blended within the zone of the corner.
+"""Moves alone and in a row: each planned where the one before ends, a row joined to one path in its zones.
 
 ``MotionPlanner`` is the planner of every kind of move, alone (``plan``) or in a chain (``chain``). A chain is planned
-move by move as if each stopped, so what is refused does not depend on zones; then neighbours are blended from the first
-corner to the last (``blend``) into one sequence of rows. Without zones the rows are those of the plans to the last bit.
-Where two moves have different overrides, the smaller one holds while both run.
+move by move as if each stopped, so what is refused does not depend on zones; then the moves up to each stop become one
+path, timed as a whole (``chaining``). Without zones the rows are those of the plans to the last bit.
 
-Under a speed cap (``speed_cap``) a move takes the override at which it keeps the cap, and a blend keeps it too.
+Under a speed cap (``speed_cap``) a move takes the override at which it keeps the cap, and a path keeps it too.
 
-A row in the middle of a blend belongs to both moves; in the log and for the lamp it counts as the first of them up to
-the middle, then as the second.
+A row in a corner belongs to both moves; in the log and for the lamp it counts as the first of them up to the middle,
+then as the second.
 
 Called by the controller before anything moves, and by the rehearsal of a program.
 """
@@ -223,9 +222,9 @@ class MotionPlanner:
     def join(
         self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, cap: float | None = None
     ) -> ChainPlan:
-        """Return moves, each planned from the end of the one before, blended in the zones (m) at their ends.
+        """Return moves, each planned from the end of the one before, joined in the zones (m) at their ends.
 
-        The last one stops, whatever its zone is. ``cap`` m/s is that of ``plan``, which the blends keep as well.
+        The last one stops, whatever its zone is. ``cap`` m/s is that of ``plan``, which the paths keep as well.
         """
         if not plans:
             raise ValueError("a chain has at least one move")

@@ -11,12 +11,16 @@ def bench(tmp_path, monkeypatch):
     return Bench(tmp_path, monkeypatch, PROGRAM)
 
 
-def test_a_program_that_was_left_by_a_jog_returns_to_its_path_first(bench):
+def leave(bench, axis, **jog):
+    """Start the program, pause it on its path, and jog away from there."""
     bench.send("start")
     bench.turns(150)
     assert bench.do("pause") is None
-    number = bench.jog("X", step=10)
-    bench.rest(alive=number)
+    bench.rest(alive=bench.jog(axis, **jog))
+
+
+def test_a_program_that_was_left_by_a_jog_returns_to_its_path_first(bench):
+    leave(bench, "X", step=10)
     bench.send("start")
     bench.turns(2)
     assert bench.facts.doing == "return"
@@ -26,11 +30,7 @@ def test_a_program_that_was_left_by_a_jog_returns_to_its_path_first(bench):
 
 
 def test_a_return_from_afar_is_refused_and_changes_nothing(bench):
-    bench.send("start")
-    bench.turns(150)
-    assert bench.do("pause") is None
-    number = bench.jog("J1", step=30, speed=100)
-    bench.rest(alive=number)
+    leave(bench, "J1", step=30, speed=100)
     before = bench.q
     assert bench.do("start") == "RBL541"
     assert (bench.facts.state, bench.facts.mode) == ("paused", "MANUAL")
@@ -38,11 +38,7 @@ def test_a_return_from_afar_is_refused_and_changes_nothing(bench):
 
 
 def test_a_pause_on_the_return_leaves_the_program_where_it_stands(bench):
-    bench.send("start")
-    bench.turns(150)
-    assert bench.do("pause") is None
-    number = bench.jog("X", step=10)
-    bench.rest(alive=number)
+    leave(bench, "X", step=10)
     bench.send("start")
     bench.turns(10)
     assert bench.do("pause") is None

@@ -457,13 +457,12 @@ def test_a_second_page_stops_a_jog_watches_and_takes_over_by_hand(live, served, 
 
 
 def test_a_page_that_is_closed_stops_its_jog_and_frees_control(live, served, browser):
-    url, _ = served
     press(live, "jog-Z+")
     live.page.close()
-    second = LivePage(browser, url)
+    second = LivePage(browser, served[0])
     second.waits_for("Paused")
     # alone again: it has control
-    assert json.loads(second.page.evaluate("JSON.stringify(document.querySelector('[data-testid=give]') !== null)"))
+    assert second.page.evaluate("document.querySelector('[data-testid=give]') !== null") is True
 
 
 def test_beside_the_prompt_a_page_takes_back_and_opens_anew_for_another_program(browser, program, monkeypatch):
@@ -476,9 +475,8 @@ def test_beside_the_prompt_a_page_takes_back_and_opens_anew_for_another_program(
             lines = "window.robolang?.runs[0].statements.all.map((one) => one.line).join()"
             # asked again and again: the policy of the page lets no function wait inside it
             for _ in range(PATIENCE_MS // POLL_MS):
-                found = page.evaluate(lines)
-                if found == expected:
-                    break
+                if (found := page.evaluate(lines)) == expected:
+                    return
                 page.wait_for_timeout(POLL_MS)
             assert found == expected
 

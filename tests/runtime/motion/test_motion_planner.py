@@ -358,3 +358,16 @@ def test_zones_that_leave_next_to_nothing_of_a_move_keep_its_speed(decimals):
         times.append(len(robot.planner.chain(robot.home(), commands, TOOL).q) - 1)
     assert max(times) <= min(times) + 2
     assert max(times) * robot.profile.period_s < 0.060 / 0.2 + 0.15
+
+
+def test_a_chain_that_keeps_no_cap_stops_at_its_corners(monkeypatch):
+    """Moves alone keep it: the planner finds their overrides itself."""
+    robot = bench("puma560")
+    commands = by(robot, *RIGHT_ANGLE, zone=0.03, speed=0.4)
+    found = robot.planner.chain(robot.home(), commands, TOOL, cap=0.25)
+    assert found.corners[0].cycles > 0
+    monkeypatch.setattr("runtime.motion.chaining._under_cap", lambda *_: math.inf)
+    monkeypatch.setattr("runtime.motion.chaining._TIMES", 2)
+    found = robot.planner.chain(robot.home(), commands, TOOL, cap=0.25)
+    assert found.corners[0].cycles == 0
+    assert speeds(robot, found.q).max() <= 0.25

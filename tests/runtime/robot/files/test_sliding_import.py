@@ -217,8 +217,11 @@ def test_mm_in_a_file_of_m_are_doubted(tmp_path, old, new, doubted):
 
 
 def test_a_gantry_whose_joints_are_in_one_place_is_no_point():
-    frames = [joint(n, f"l{k}", f"l{k + 1}", xyz=(0, 0, 0), axis=axis, kind="prismatic", limit=STROKE)
-              for k, (n, axis) in enumerate((("x", (1, 0, 0)), ("y", (0, 1, 0)), ("z", (0, 0, 1))))]  # fmt: skip
+    directions = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
+    frames = [
+        joint(name, f"l{k}", f"l{k + 1}", xyz=(0, 0, 0), axis=axis, kind="prismatic", limit=STROKE)
+        for k, (name, axis) in enumerate(directions.items())
+    ]
     links = [
         '<link name="l0"/>',
         *(f'<link name="l{k}">{inertial(m)}</link>' for k, m in ((1, 9.0), (2, 5.0), (3, 2.0))),
