@@ -8,6 +8,7 @@ import pytest
 from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about
 from runtime.motion.cartesian_planner import EXCEPTION, CartesianPlanner
+from runtime.motion.chain.timing import Timed, timed
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.motion_planner import ChainFault, ChainPlan
 from tests.campaign import size
@@ -371,3 +372,17 @@ def test_a_chain_that_keeps_no_cap_stops_at_its_corners(monkeypatch):
     found = robot.planner.chain(robot.home(), commands, TOOL, cap=0.25)
     assert found.corners[0].cycles == 0
     assert speeds(robot, found.q).max() <= 0.25
+
+
+def test_a_chain_that_takes_longer_than_its_moves_alone_stops_at_its_corners(monkeypatch):
+    robot = bench("puma560")
+    commands = by(robot, *RIGHT_ANGLE, zone=0.03, speed=0.4)
+
+    def slow(*given):
+        found = timed(*given)
+        return Timed(**{name: np.repeat(getattr(found, name), 2, axis=0) for name in found.__slots__})
+
+    monkeypatch.setattr("runtime.motion.chaining.timed", slow)
+    found = chain(robot, commands)
+    assert [corner.cycles for corner in found.corners] == [0]
+    assert len(found.q) - 1 == sum(len(part.plan.q) - 1 for part in found.parts)

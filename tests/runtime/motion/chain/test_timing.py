@@ -82,6 +82,8 @@ def test_a_limit_that_binds_at_one_place_slows_the_motion_there_alone():
     speeds = np.diff(held.x) / H
     middle = 0.5 * (held.x[:-1] + held.x[1:])
     assert speeds[np.abs(middle - 1.0) < 0.02].max() < 0.11
+    bounds = np.interp(held.x, narrow.x, np.sqrt(narrow.bounds.fastest))
+    assert (speeds <= np.maximum(bounds[:-1], bounds[1:]) * (1.0 + 1e-9)).all()
     far = np.abs(middle - 1.0) > 0.5
     assert speeds[far].max() > 0.99 * (np.diff(free.x) / H).max()
 
