@@ -151,16 +151,8 @@ def _there(found: Rounding | None) -> Rounding:
 def _timed(path: ChainPath, plans: Sequence[MovePlan], limits: ChainLimits) -> Timed:
     """Return a path timed with the speeds, overrides and TIMEs of its moves; ``Fault`` RBL404 where it keeps no cap."""
     number = path.move_at(path.x)
-    along = np.array([plan.path is not None for plan in plans])
-    share = np.array([plan.acceleration for plan in plans])
-    most = np.where(along, limits.path.acceleration * share, math.inf)
-    if limits.cap is not None:
-        most = np.minimum(most, limits.cap.gained)
-    tool = ToolLimits(
-        acceleration=most[number],
-        turning=np.where(along, limits.path.rotation_acceleration * share, math.inf)[number],
-    )
     overrides = np.array([plan.override for plan in plans])
+    tool = _tool_limits(plans, limits, number)
     bounds = path.bounds((limits.joints.speed, limits.joints.acceleration), tool, overrides)
     slower, under = np.ones(len(plans)), 1.0
     for _ in range(_TIMES):
@@ -177,6 +169,17 @@ def _timed(path: ChainPath, plans: Sequence[MovePlan], limits: ChainLimits) -> T
     if not over <= 1.0:
         raise Fault("RBL404", "no timing of the moves keeps below the cap of MANUAL")
     return found
+
+
+def _tool_limits(plans: Sequence[MovePlan], limits: ChainLimits, number: NDArray[np.intp]) -> ToolLimits:
+    """Return what the tool keeps to at points that belong to moves ``number`` (M + 1,): on joint moves only a cap."""
+    along = np.array([plan.path is not None for plan in plans])
+    share = np.array([plan.acceleration for plan in plans])
+    most = np.where(along, limits.path.acceleration * share, math.inf)
+    if limits.cap is not None:
+        most = np.minimum(most, limits.cap.gained)
+    turning = np.where(along, limits.path.rotation_acceleration * share, math.inf)
+    return ToolLimits(acceleration=most[number], turning=turning[number])
 
 
 def _too_quick(path: ChainPath, plans: Sequence[MovePlan], x: Array, period_s: float) -> Array:
