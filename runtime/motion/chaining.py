@@ -13,10 +13,9 @@ from numpy.typing import NDArray
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
-from runtime.core.linear import matmul
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.chain_path import ChainPath, ToolLimits
-from runtime.motion.chain.corner import Corner, Rounding, rounding
+from runtime.motion.chain.corner import Corner, Rounding, roundings, woven
 from runtime.motion.chain.piece import Piece
 from runtime.motion.chain.timing import Limits, Path, Timed, timed
 from runtime.motion.path_ik import Arm
@@ -25,6 +24,8 @@ from runtime.robot.model.drives import PathLimits
 
 _TIMES = 8
 """Timings of a path until its moves take the TIMEs that are programmed, and keep to a cap."""
+_AROUND = np.linspace(-1.0, 1.0, 33)
+"""Places of a corner, by its half, at which its distance from the programmed one is taken."""
 _FIRMLY = 1.0 + 1e-4
 
 
@@ -70,13 +71,11 @@ class _Run:
 
 def joined(plans: Sequence[MovePlan], zones: Sequence[float], arm: Arm, limits: ChainLimits) -> Joined:
     """Return moves as one motion, rounded in the zones (m) at their ends, the last of which stops."""
-    roundings = [_rounding(*pair, arm) for pair in zip(plans, plans[1:], zones, strict=False)]
     start = plans[0].q[:1]
     q, setpoints, command, share = [start], [start], [np.zeros(1, dtype=np.int32)], [np.zeros(1)]
     corners: list[Corner] = []
-    for first, last in _between_stops(roundings, len(plans)):
-        at = first
-        for run in _runs(plans[first : last + 1], roundings[first:last], zones[first:last], arm, limits):
+    for at, last, rounded in _between_stops(plans, zones, arm):
+        for run in _runs(plans[at : last + 1], rounded, zones[at:last], arm, limits):
             q.append(run.q[1:])
             setpoints.append(run.setpoints[1:])
             command.append((run.number[1:] + at).astype(np.int32))
@@ -98,7 +97,7 @@ def joined(plans: Sequence[MovePlan], zones: Sequence[float], arm: Arm, limits: 
 
 def _runs(
     plans: Sequence[MovePlan],
-    roundings: Sequence[Rounding | None],
+    rounded: Sequence[Rounding],
     zones: Sequence[float],
     arm: Arm,
     limits: ChainLimits,
@@ -110,30 +109,39 @@ def _runs(
     ]
     if len(plans) == 1:
         return alone
-    path = ChainPath(arm, [_piece(plan) for plan in plans], [_there(each) for each in roundings])
+    path = ChainPath(arm, [_piece(plan) for plan in plans], woven([_piece(plan) for plan in plans], rounded, arm))
     try:
         found = _timed(path, plans, limits)
     except Fault:
         return alone
     if len(found.x) - 1 > sum(len(plan.q) - 1 for plan in plans):
         return alone
-    corners = tuple(_corner(path, k, zone, found.x) for k, zone in enumerate(zones))
+    corners = _corners(path, zones, found.x)
     number, share = path.move_at(found.x), path.share_at(found.x)
     return [_Run(q=found.q, setpoints=found.setpoints, number=number, share=share, corners=corners)]
 
 
-def _rounding(first: MovePlan, second: MovePlan, zone: float, arm: Arm) -> Rounding | None:
-    if not zone > 0.0 or first.piece is None or second.piece is None:
-        return None
-    found = rounding(first.piece, second.piece, zone, arm)
-    return found if found.half > 0.0 else None
-
-
-def _between_stops(roundings: Sequence[Rounding | None], count: int) -> Iterator[tuple[int, int]]:
-    """Yield the first and the last move between each two stops."""
+def _between_stops(
+    plans: Sequence[MovePlan], zones: Sequence[float], arm: Arm
+) -> Iterator[tuple[int, int, list[Rounding]]]:
+    """Yield the first and the last move between each two stops, with the roundings between them."""
     first = 0
-    for k in range(count):
-        if k == count - 1 or roundings[k] is None:
+    for begin, end in _with_zones(plans, zones):
+        found = (
+            roundings([_piece(plan) for plan in plans[begin : end + 1]], zones[begin:end], arm) if end > begin else []
+        )
+        for k in range(begin, end + 1):
+            if k == end or not found[k - begin].half > 0.0:
+                yield first, k, found[first - begin : k - begin]
+                first = k + 1
+
+
+def _with_zones(plans: Sequence[MovePlan], zones: Sequence[float]) -> Iterator[tuple[int, int]]:
+    """Yield the first and the last of moves in a row that have zones between them, and go somewhere."""
+    first = 0
+    for k, plan in enumerate(plans):
+        runs_on = k + 1 < len(plans) and zones[k] > 0.0 and plan.piece is not None and plans[k + 1].piece is not None
+        if not runs_on:
             yield first, k
             first = k + 1
 
@@ -141,11 +149,6 @@ def _between_stops(roundings: Sequence[Rounding | None], count: int) -> Iterator
 def _piece(plan: MovePlan) -> Piece:
     assert plan.piece is not None
     return plan.piece
-
-
-def _there(found: Rounding | None) -> Rounding:
-    assert found is not None
-    return found
 
 
 def _timed(path: ChainPath, plans: Sequence[MovePlan], limits: ChainLimits) -> Timed:
@@ -198,13 +201,18 @@ def _under_cap(path: ChainPath, cap: SpeedCap | None, share: float) -> Array | f
     return np.asarray((share * cap.most * PLANNED / np.maximum(path.speeds(), 1e-9)) ** 2)
 
 
-def _corner(path: ChainPath, number: int, zone: float, x: Array) -> Corner:
-    """Return what became of a corner after move ``number`` of a path that is at x (N + 1,)."""
-    found = path.roundings[number]
-    middle = path.ends[number + 1]
-    inside = (x > middle - found.half) & (x < middle + found.half)
-    places = middle + found.half * np.linspace(-1.0, 1.0, 33)
-    q = np.concatenate([found.second.q_start[None], path.joints(places)])
-    points = matmul(path.arm.kinematics.forward(q), path.arm.X_flange_tool)[:, :3, 3]
-    off = np.sqrt(((points[1:] - points[0]) ** 2).sum(axis=1))
-    return Corner(radius=zone, cycles=int(np.count_nonzero(inside)), reach=float(off.max()), deviation=float(off.min()))
+def _corners(path: ChainPath, zones: Sequence[float], x: Array) -> tuple[Corner, ...]:
+    """Return what became of the corners of a path that is at x (N + 1,)."""
+    course = path.course
+    halves, middles = course.overlap.halves[1:-1], course.ends[1:-1]
+    places = middles[:, None] + halves[:, None] * _AROUND
+    # one after the other, since corners may overlap
+    order = np.argsort(places, axis=None, kind="stable")
+    points = np.empty((places.size, 3))
+    points[order] = course.points(places.ravel()[order], path.joints(places.ravel()[order]))
+    off = np.sqrt(((points.reshape(len(zones), -1, 3) - course.corners[:, None]) ** 2).sum(axis=2))
+    cycles = np.searchsorted(x, middles + halves) - np.searchsorted(x, middles - halves, side="right")
+    return tuple(
+        Corner(radius=zone, cycles=int(lasts), reach=float(far), deviation=float(near))
+        for zone, lasts, far, near in zip(zones, cycles, off.max(axis=1), off.min(axis=1), strict=True)
+    )

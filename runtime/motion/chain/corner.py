@@ -11,17 +11,25 @@ the corner, stays, and falls,
 So place, direction and curvature are continuous where it leaves the first and joins the second; two pieces of one line
 stay that line, run evenly; and on lines the tool is within d of the corner. Where a move is a joint move, or goes
 through its wrist, the joints are added in place of poses: q(u) = q_first + q_second - q_corner. d is the zone, where it
-is not more than half of either move, and less where the tool would leave the zone or a joint its range. Called by
-``joined``; m, rad.
+is not more than half of either move, and less where the tool would leave the zone or a joint its range.
+
+Moves in a row that turn little stand for a curve: there d is the zone also where that is more than half of a move, the
+corners overlap, and what runs bends evenly (``woven``). Called by ``joined``; m, rad.
 """
 
-from dataclasses import dataclass
+import itertools
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from runtime.core.frames import Array, pose
-from runtime.core.linear import matmul
-from runtime.motion.chain.piece import Piece, solved
+from runtime.core.frames import Array
+from runtime.core.linear import dot, matmul, norm
+from runtime.core.units import DEG
+from runtime.motion.chain.course import Course
+from runtime.motion.chain.overlap import Flags, ordered
+from runtime.motion.chain.piece import Piece
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, LineSolver
 
 _CHECKED = np.linspace(0.0, 1.0, 17)
@@ -30,6 +38,14 @@ _LEAST = 1e-7
 """A corner of less, m, is none."""
 _SAME = 1e-7
 """By how much the joints of a corner may differ from those of its moves where they meet, rad: rounding."""
+GENTLE = 30.0 * DEG
+"""Moves that turn by less stand for a curve."""
+_TANGENT = 1e-3
+"""Share of a path over which its direction at an end is taken."""
+_WEAVINGS = 4
+_BETWEEN = 6
+"""Places of a move at which corners that overlap are checked."""
+_WITHIN = 1.0 + 1e-9
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -48,73 +64,156 @@ class Corner:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Rounding:
-    """The curve between two pieces; ``half`` d m of its extent, 0: the arm stops; ``by_pose``: poses are added."""
+    """The curve at a corner of programmed ``zone`` m: ``half`` d m, 0: the arm stops; ``by_pose``: poses are added."""
 
-    first: Piece
-    second: Piece
-    half: float
-    by_pose: bool
-
-    @property
-    def line(self) -> LineSolver | None:
-        """The solver of its poses, None where joints are added."""
-        curve = self.second.curve
-        return curve if self.by_pose and isinstance(curve, LineSolver) else None
-
-    def joints(self, u: Array, near: Array) -> Array:
-        """Return q (N, n) at u (N,) in [0, 1], nearest to ``near`` (N, n); NaN where there is no solution."""
-        line = self.line
-        if line is not None:
-            return solved(line.arm, line, self.poses(u), near)
-        a, b = self._shares(u)
-        corner = self.second.q_start
-        # the first rests at its end from where the second has it, so the corner itself cancels out
-        return self.first.joints(a, near) + self.second.joints(b, np.broadcast_to(corner, near.shape)) - corner
-
-    def poses(self, u: Array) -> Array:
-        """Return the poses (N, 4, 4) of the tool at u (N,) in [0, 1], where poses are added."""
-        a, b = self._shares(u)
-        first, second = self.first.poses(a), self.second.poses(b)
-        corner = self.second.poses(np.zeros(1))[0]
-        R = matmul(matmul(first[:, :3, :3], corner[:3, :3].T), second[:, :3, :3])
-        return pose(first[:, :3, 3] + second[:, :3, 3] - corner[:3, 3], R)
-
-    def _shares(self, u: Array) -> tuple[Array, Array]:
-        """Return the shares (N,) of the first and of the second move that are run together."""
-        length = 2.0 * self.half
-        return 1.0 - length * _passed(1.0 - u) / self.first.extent, length * _passed(u) / self.second.extent
+    zone: float
+    half: float = 0.0
+    by_pose: bool = True
 
 
-def rounding(first: Piece, second: Piece, zone: float, arm: Arm) -> Rounding:
-    """Return the curve at the corner between two pieces whose programmed zone is ``zone`` m."""
+def roundings(pieces: Sequence[Piece], zones: Sequence[float], arm: Arm) -> list[Rounding]:
+    """Return the roundings (K - 1,) between pieces (K,) with zones (K - 1,) m at their ends."""
+    pairs = list(zip(pieces, pieces[1:], zones, strict=False))
+    room = np.array([_room_between(*pair, arm) for pair in pairs])
+    found = [Rounding(zone=zone) for zone in zones]
+    easy = _hold_by_pose(pieces, np.asarray(zones, dtype=np.float64), room, arm)
+    for k, (first, second, zone) in enumerate(pairs):
+        if easy[k]:
+            found[k] = Rounding(zone=zone, half=float(room[k]))
+        elif room[k] > _LEAST:
+            found[k] = _fitted(first, second, zone, float(room[k]), arm)
+    return found
+
+
+def _hold_by_pose(pieces: Sequence[Piece], zones: Array, halves: Array, arm: Arm) -> Flags:
+    """Return whether (K - 1,) corners of ``halves`` hold with poses added; all are solved in one call."""
+    closed = arm.kinematics.closed_form
+    same = [closed and _one_posture(first, second) for first, second in itertools.pairwise(pieces)]
+    found = np.array(same, dtype=bool) & (halves > _LEAST)
+    rows = np.flatnonzero(found)
+    if not len(rows):
+        return found
+    course = Course(arm, pieces, np.where(found, halves, 0.0), np.ones(len(halves), dtype=bool))
+    x = (course.ends[rows + 1][:, None] + halves[rows][:, None] * (2.0 * _CHECKED - 1.0)).ravel()
+    q = course.joints(x, np.repeat(course.starts[rows + 1], len(_CHECKED), axis=0))
+    off = course.points(x, q) - np.repeat(course.corners[rows], len(_CHECKED), axis=0)
+    far = np.sqrt((off**2).sum(axis=1)) / np.repeat(zones[rows], len(_CHECKED))
+    fits = _in_ranges(q, arm) & (far <= _WITHIN)
+    found[rows] = fits.reshape(len(rows), -1).all(axis=1)
+    return found
+
+
+def _one_posture(first: Piece, second: Piece) -> bool:
+    """Return whether two moves keep their postures, in one configuration."""
+    a, b = first.curve, second.curve
+    return isinstance(a, LineSolver) and isinstance(b, LineSolver) and str(a.branch) == str(b.branch)
+
+
+def _fitted(first: Piece, second: Piece, zone: float, half: float, arm: Arm) -> Rounding:
+    """Return the largest rounding found between two pieces, from ``half`` m downwards; its half is 0 for none."""
     by_pose = first.keeps_posture and second.keeps_posture
-    half = min(_room(first, zone, arm, at_end=True), _room(second, zone, arm, at_end=False))
     for _ in range(_TRIES):
         if not half > _LEAST:
             break
         for each in (by_pose, False) if by_pose else (False,):
-            found = Rounding(first=first, second=second, half=half, by_pose=each)
-            if _holds(found, zone, arm):
-                return found
+            if _holds(Course(arm, (first, second), np.array([half]), np.array([each])), zone):
+                return Rounding(zone=zone, half=half, by_pose=each)
         half *= _SMALLER
-    return Rounding(first=first, second=second, half=0.0, by_pose=by_pose)
+    return Rounding(zone=zone, by_pose=by_pose)
 
 
-def _passed(u: Array) -> Array:
-    """Return f(u): its second derivative rises for a third, stays and falls, so its third is as small as it can be."""
-    third = u - 1.0 / 3.0
-    stays = 1.0 / 36.0 + 0.25 * third + 0.75 * third**2
-    return np.asarray(
-        np.where(u <= 1.0 / 3.0, 0.75 * u**3, np.where(u <= 2.0 / 3.0, stays, u - 0.5 + 0.75 * (1.0 - u) ** 3))
-    )
+def _holds(course: Course, zone: float) -> bool:
+    """Return whether the corner of two pieces stays in its zone and the ranges, and meets its moves."""
+    (first, second), corner = course.pieces, course.starts[1]
+    half, middle = course.overlap.halves[1], course.ends[1]
+    near = np.broadcast_to(corner, (len(_CHECKED), len(corner)))
+    # just within the ends: at them one move runs alone
+    inside = np.clip(2.0 * _CHECKED - 1.0, -1.0 + 1e-12, 1.0 - 1e-12)
+    q = course.joints(middle + half * inside, near)
+    if not _in_ranges(q, course.arm).all():
+        return False
+    meets = first.joints(np.array([1.0 - half / first.extent]), near[:1])[0]
+    joins = second.joints(np.array([half / second.extent]), near[:1])[0]
+    if not np.maximum(np.abs(q[0] - meets).max(), np.abs(q[-1] - joins).max()) <= _SAME:
+        return False
+    return bool((_distances(course.arm, np.concatenate([corner[None], q])) <= zone * _WITHIN).all())
 
 
-def turned(u: Array) -> Array:
-    """Return f'(u) (N,): the share of the second move in the direction and in the speed at u (N,) of a corner."""
-    stays = 0.25 + 1.5 * (u - 1.0 / 3.0)
-    return np.asarray(
-        np.where(u <= 1.0 / 3.0, 2.25 * u**2, np.where(u <= 2.0 / 3.0, stays, 1.0 - 2.25 * (1.0 - u) ** 2))
-    )
+def _in_ranges(q: Array, arm: Arm) -> Flags:
+    """Return whether (N,) joints (N, n) are within their ranges; NaN is not."""
+    return np.asarray(((q >= arm.spec.lower - RANGE_TOLERANCE) & (q <= arm.spec.upper + RANGE_TOLERANCE)).all(axis=1))
+
+
+def woven(pieces: Sequence[Piece], found: Sequence[Rounding], arm: Arm) -> list[Rounding]:
+    """Return roundings with corners of their whole zones where moves turn little, and where that fits."""
+    gentle = np.array([_gentle(*pair, each) for pair, each in zip(itertools.pairwise(pieces), found, strict=True)])
+    halves = np.array([each.half for each in found])
+    zones = np.array([each.zone for each in found])
+    by_pose = np.array([each.by_pose for each in found])
+    ends = np.concatenate([[0.0], np.cumsum([piece.extent for piece in pieces])])
+    for _ in range(_WEAVINGS):
+        wide = ordered(
+            ends, np.minimum(np.where(gentle, np.maximum(zones, halves), halves), _apart(ends, halves, by_pose))
+        )
+        if not (~(wide <= halves)).any():
+            break
+        bad = _outside(Course(arm, pieces, wide, by_pose), zones, ~(wide <= halves))
+        if not bad.any():
+            return [replace(each, half=half) for each, half in zip(found, wide.tolist(), strict=True)]
+        gentle &= ~bad
+    return list(found)
+
+
+def _gentle(first: Piece, second: Piece, found: Rounding) -> bool:
+    """Return whether two moves turn so little that they stand for a curve."""
+    if not (found.half > 0.0 and found.by_pose and first.path is not None and second.path is not None):
+        return False
+    if not (first.path.length > 0.0 and second.path.length > 0.0):
+        return False
+    before = first.path.points(np.array([1.0 - _TANGENT, 1.0]))
+    after = second.path.points(np.array([0.0, _TANGENT]))
+    a, b = before[1] - before[0], after[1] - after[0]
+    return math.atan2(norm(np.cross(a, b)), dot(a, b)) < GENTLE
+
+
+def _apart(ends: Array, halves: Array, by_pose: Flags) -> Array:
+    """Return the largest halves (K - 1,) that do not overlap a corner at which joints are added."""
+    room = np.full(len(halves), np.inf)
+    extents = np.diff(ends)
+    for k in np.flatnonzero(~by_pose).tolist():
+        room[k] = halves[k]
+        for beside, extent in ((k - 1, extents[k]), (k + 1, extents[k + 1])):
+            if 0 <= beside < len(halves):
+                room[beside] = min(room[beside], max(extent - halves[k], halves[beside]))
+    return room
+
+
+def _outside(course: Course, zones: Array, wide: Flags) -> Flags:
+    """Return which (K - 1,) of the ``wide`` corners are in the neighbourhood of a place that does not fit.
+
+    Where the tool is off the programmed path it has to be in the zone of one of the corners there, in the ranges.
+    """
+    ends, halves = course.ends, course.overlap.halves[1:-1]
+    x = np.unique(np.concatenate([ends[:-1] + share * np.diff(ends) for share in np.linspace(0.0, 1.0, _BETWEEN + 1)]))
+    q = course.joints(x, course.near(x))
+    points = course.points(x, q)
+    first, last = course.overlap.running(x)
+    nearest = np.where(first == last, 0.0, np.inf)
+    for step in range(int((last - first).max(initial=0))):
+        rows = np.flatnonzero(first + step < last)
+        corner = first[rows] + step
+        off = np.sqrt(((points[rows] - course.corners[corner]) ** 2).sum(axis=1)) / zones[corner]
+        nearest[rows] = np.minimum(nearest[rows], off)
+    misfit = x[~(_in_ranges(q, course.arm) & (nearest <= _WITHIN))]
+    near = np.searchsorted(misfit, ends[1:-1] + halves, side="right") > np.searchsorted(misfit, ends[1:-1] - halves)
+    return np.asarray(near & wide)
+
+
+def _room_between(first: Piece, second: Piece, zone: float, arm: Arm) -> float:
+    """Return how far from the corner between two pieces lies in its zone on both, m of their extents."""
+    if not zone > 0.0:
+        return 0.0
+    return min(_room(first, zone, arm, at_end=True), _room(second, zone, arm, at_end=False))
 
 
 def _room(piece: Piece, zone: float, arm: Arm, *, at_end: bool) -> float:
@@ -140,19 +239,3 @@ def _distances(arm: Arm, q: Array) -> Array:
     """Return how far the tool at q (N, n) is from where it is at the first of them, m."""
     points = matmul(arm.kinematics.forward(q), arm.X_flange_tool)[:, :3, 3]
     return np.asarray(np.linalg.norm(points - points[0], axis=1))
-
-
-def _holds(found: Rounding, zone: float, arm: Arm) -> bool:
-    """Return whether a corner stays in its zone and the ranges, and meets its moves."""
-    corner = found.second.q_start
-    near = np.broadcast_to(corner, (len(_CHECKED), len(corner)))
-    q = found.joints(_CHECKED, near)
-    if not np.isfinite(q).all():
-        return False
-    if not ((q >= arm.spec.lower - RANGE_TOLERANCE) & (q <= arm.spec.upper + RANGE_TOLERANCE)).all():
-        return False
-    meets = found.first.joints(np.array([1.0 - found.half / found.first.extent]), near[:1])[0]
-    joins = found.second.joints(np.array([found.half / found.second.extent]), near[:1])[0]
-    if not np.maximum(np.abs(q[0] - meets).max(), np.abs(q[-1] - joins).max()) <= _SAME:
-        return False
-    return bool((_distances(arm, np.concatenate([corner[None], q])) <= zone * (1.0 + 1e-9)).all())

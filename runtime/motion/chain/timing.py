@@ -15,21 +15,25 @@ The fastest of ``_SHARES`` is taken. Called by ``joined``; x m, t s, q rad.
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.units import badness
+from runtime.motion.chain.bends import bend_speeds
 from runtime.motion.chain.rates import Bounds, rates
 from runtime.motion.chain.time_law import TimeLaw, eased, narrow
 from runtime.motion.fine_interpolator import through
 from runtime.motion.velocity_profile import check_duration
 
-_ROUNDS = 14
+_ROUNDS = 40
 _FIRMER = 4
 """Rounds after which bounds are lowered by more than a limit is passed, so that they come to an end."""
+_BOTH = 5
+"""Rounds after which speed and acceleration are lowered where a jerk is passed, whichever it seems to come from."""
+_LEAST_LOWERING = 1.002
 _SLACK = 1.0 + 1e-9
 """A limit is kept when it is passed by no more than rounding."""
 _SHARES = (1.0, 0.5, 0.25)
@@ -83,6 +87,7 @@ class Timed:
 def timed(path: Path, limits: Limits, mean_s: float) -> Timed:
     """Return the fastest motion found along a path; ``mean_s`` is T. ``Fault`` RBL404 for one of too long a time."""
     shares = _SHARES if mean_s > 0.0 else (1.0,)
+    path = _within_bends(path, limits)
     best: Timed | None = None
     for share in shares:
         found = _timed(path, limits, mean_s * share, share)
@@ -95,6 +100,16 @@ def timed(path: Path, limits: Limits, mean_s: float) -> Timed:
             break
     assert best is not None
     return best
+
+
+def _within_bends(path: Path, limits: Limits) -> Path:
+    """Return a path whose bends are passed within the jerk of the joints."""
+    if not np.isfinite(limits.jerk).all():
+        return path
+    bounds = path.bounds
+    across = bounds.across[:, : len(limits.jerk)]
+    speeds = bend_speeds(path.x, across, np.sqrt(bounds.fastest), limits.jerk, limits.period_s)
+    return replace(path, bounds=bounds.replaced(speeds**2))
 
 
 def _timed(path: Path, limits: Limits, mean_s: float, share: float) -> Timed:
@@ -113,9 +128,10 @@ def _timed(path: Path, limits: Limits, mean_s: float, share: float) -> Timed:
         _lower(path.x, acceleration, found.x, gaining.max(axis=1), (2, around), firm)
         # the jerk of a change of speed, or that of the path itself, which a lower speed makes less by its cube
         along = _changing(path, found.x, limits)
-        changes = along >= 0.5 * jerk
+        changes = (along >= 0.5 * jerk) | (round_ >= _BOTH)
         _lower(path.x, acceleration, found.x, np.where(changes, jerk, 0.0).max(axis=1), (3, around), firm)
-        _lower(path.x, speed, found.x, np.where(changes, 0.0, jerk).max(axis=1), (3, 1), firm / 3.0)
+        bends = ~changes | (round_ >= _BOTH)
+        _lower(path.x, speed, found.x, np.where(bends, jerk, 0.0).max(axis=1), (3, 1), firm / 3.0)
     return _slowed(path, limits, law, mean_s)
 
 
@@ -176,7 +192,7 @@ def _lower(grid: Array, field: Array, x: Array, passed: Array, about: tuple[int,
     firsts = np.maximum(np.searchsorted(grid, starts, side="left") - 1, 0)
     lasts = np.searchsorted(grid, ends, side="right") + 1
     for first, end, share in zip(firsts.tolist(), lasts.tolist(), passed[bad].tolist(), strict=True):
-        lowered[first:end] = np.minimum(lowered[first:end], 1.0 / (share**firmness * (1.0 + 1e-7)))
+        lowered[first:end] = np.minimum(lowered[first:end], 1.0 / max(share**firmness, _LEAST_LOWERING))
     field *= lowered
 
 

@@ -13,6 +13,7 @@ from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.motion_planner import ChainFault, ChainPlan
 from tests.campaign import size
 from tests.runtime.motion.motions import (
+    ON_PATH,
     ROBOTS,
     TOOL,
     Bench,
@@ -151,6 +152,25 @@ def test_two_corners_never_meet_and_half_a_move_is_the_most_that_one_takes():
     found = chain(robot, by(robot, (0.0, 0.02, 0.0), (0.0, 0.0, 0.02), (0.0, -0.02, 0.0), zone=0.08, speed=1.0))
     assert [corner.reach for corner in found.corners] == pytest.approx([0.01, 0.01], rel=1e-6)
     assert limits_broken(robot, found.setpoints) == []
+
+
+@pytest.mark.parametrize("zone", [0.003, 0.012])
+def test_a_polyline_with_zones_longer_than_its_moves_bends_evenly_within_them(zone):
+    """Chords of a circle, 9 deg apart: where the zones reach from corner to corner, the tool runs on a smooth curve."""
+    robot, radius, step, speed = bench("irb2400"), 0.06, math.radians(9.0), 0.1
+    places = [radius * np.array([0.0, math.sin(k * step), 1.0 - math.cos(k * step)]) for k in range(21)]
+    found = chain(robot, by(robot, *np.diff(places, axis=0), zone=zone, speed=speed))
+    assert limits_broken(robot, found.setpoints) == []
+    points = robot.tool(found.q)[:, :3, 3]
+    corners = robot.tool(np.array([part.plan.q[-1] for part in found.parts]))[:, :3, 3]
+    to_corner = np.linalg.norm(points[:, None] - corners, axis=2).min(axis=1)
+    on_line = np.min([part.path.deviation(points) for part in found.parts], axis=0)
+    assert (to_corner[on_line > ON_PATH] <= zone).all()
+    middle = slice(len(points) // 3, 2 * len(points) // 3)
+    turned = np.linalg.norm(np.diff(points, 2, axis=0), axis=1)[middle] / robot.profile.period_s**2
+    even = turned.max() / (speed**2 / radius)
+    # between zones of 3 mm the lines are kept, and half of a move alone would bend 1.5 times as the circle
+    assert bool(even < 1.2) == (zone > 0.0047)
 
 
 def test_rows_commands_shares_and_parts_belong_together():
