@@ -1,12 +1,14 @@
 """Planning a move along a path: every set-point computed and checked before the first one is sent.
 
-The path, a line or an arc, is sampled where the interpolator will send it, every 8 ms, and solved for the joints: in
-the arm configuration it starts in, with the wrist leaving the posture of the path where it has to (``wrist_planner``).
+The path, a line, an arc or a spline, is sampled where the interpolator will send it, every 8 ms, and solved for the
+joints: in the arm configuration it starts in, with the wrist leaving the posture of the path where it has to
+(``wrist_planner``).
 It is refused when a sample is out of reach (RBL410), outside a joint's range (RBL411) or cannot be passed (RBL412), and
 slowed as a whole until every joint keeps its limits (``time_scaling``). What was checked is what runs: the interpolator
 hands out these very rows (docs/decisions/0002).
 
-On an arc of radius r the tool point is accelerated towards the centre as well, by v^2 / r. Its speed is held to
+On an arc of radius r the tool point is accelerated towards the centre as well, by v^2 / r; of a spline r is the
+smallest radius of curvature. Its speed is held to
 
     v^2 / r <= ACROSS a,    v^3 / r^2 <= j
 
@@ -32,12 +34,13 @@ from runtime.core.limits import ACCEL, SPEED, TIME
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.chain.piece import Piece, extent_of
-from runtime.motion.commands import Component, MoveArc, MoveLinear, PathMove
+from runtime.motion.commands import Component, MoveArc, MoveLinear, MoveSpline, PathMove
 from runtime.motion.fine_interpolator import through
 from runtime.motion.half_turn import in_order
 from runtime.motion.path import ArcPath, LinePath, Path
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import CalculatedMove, SeamMove, SeamTracker
+from runtime.motion.spline_path import SplinePath
 from runtime.motion.time_scaling import Pace, Slowdown
 from runtime.motion.velocity_profile import SpeedLimits, bound, profile
 from runtime.motion.wrist.switch import CONDITIONS, SAME_ANGLES, Condition, PathTiming
@@ -229,6 +232,10 @@ class CartesianPlanner:
         """Return the path of a move, one for each direction in which its tool may make a half turn."""
         if isinstance(command, MoveArc):
             return ArcPath.candidates(X_start, command.X_via, command.X_world_tool)
+        if isinstance(command, MoveSpline):
+            path = SplinePath.through(X_start, (*command.X_through, command.X_world_tool))
+            if path is not None:
+                return (path,)
         return LinePath.candidates(X_start, command.X_world_tool, self._profile.wrist.posture)
 
     def tracked(
@@ -367,8 +374,10 @@ def speed_limits(
         SPEED.checked(speed / MM, robot.max_speed / MM)
     share = command.acceleration
     acceleration, jerk = robot.acceleration * share, robot.jerk * share
-    if isinstance(path, ArcPath):
+    if not isinstance(path, LinePath):
         speed, acceleration = arc_limits(speed, acceleration, jerk, path.radius)
+    if isinstance(path, SplinePath):
+        speed = min(speed, path.turning_speed(ACROSS * robot.rotation_acceleration * share))
     position = (path.length, speed, acceleration, jerk)
     turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)
     # where only the wrist turns, it gets the limits of the tool's turning; the joints' own are checked afterwards

@@ -11,4 +11,11 @@ register(
         remedy="Teach the via point well off the straight line from start to end, or use MOVE.",
         found=Stage.MOTION,
     ),
+    Code(
+        code="RBL417",
+        name="spline-undefined",
+        meaning="No curve passes two points of a SPLINE in a row: the tool would turn at one place, or make half a "
+        "turn, which has two directions.",
+        remedy="Turn the tool in a MOVE of its own, or teach a point between the two.",
+    ),
 )

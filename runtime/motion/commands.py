@@ -1,6 +1,7 @@
 """Motion requests as the controller takes them: SI, frozen, complete.
 
-Three kinds: straight (``MoveLinear``), on an arc (``MoveArc``), all joints together (``MoveJoint``). All have:
+Four kinds: straight (``MoveLinear``), on an arc (``MoveArc``), on a curve through points (``MoveSpline``), all joints
+together (``MoveJoint``). All have:
 ``duration`` s from start to stop (None: as fast as speed and limits allow); ``zone`` m, the radius about its end within
 which it may go over into the next move (``runtime.motion.chain.corner``), 0: it stops there; ``q_end`` (n,) rad,
 the taught joint angles of the end, turns and all; None where only its pose is taught, then with the words of
@@ -85,6 +86,17 @@ class MoveArc(PathMotion):
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
+class MoveSpline(PathMotion):
+    """Move the tool on a curve of continuous curvature through poses ``X_through`` (4, 4) to ``X_world_tool`` (4, 4).
+
+    It passes place and orientation of each (``runtime.motion.spline_path``). ``held`` as of ``MoveArc``.
+    """
+
+    X_through: tuple[Array, ...]
+    X_world_tool: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
 class MoveJoint(Motion):
     """Turn all joints together to ``q_end`` (n,) rad, each in proportion to its turn; the tool follows no given path.
 
@@ -101,10 +113,10 @@ class MoveJoint(Motion):
             raise ValueError("a joint move needs joint angles or a pose to go to")
 
 
-PathMove: TypeAlias = MoveLinear | MoveArc
+PathMove: TypeAlias = MoveLinear | MoveArc | MoveSpline
 """A move whose tool point has a path of its own."""
 
-Command: TypeAlias = MoveLinear | MoveArc | MoveJoint
+Command: TypeAlias = PathMove | MoveJoint
 
 
 def in_configuration(branch: Branch, words: tuple[str, ...]) -> bool:

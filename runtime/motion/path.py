@@ -1,4 +1,4 @@
-r"""The path of the tool point: a line or an arc; orientation by one of two laws.
+r"""The path of the tool point: a line, an arc or a spline; orientation by one of two laws.
 
     T(s) = [ R(s) , p(s) ; 0 1 ],   s in [0, 1]
     line   p(s) = p_start + s (p_end - p_start)
@@ -20,6 +20,8 @@ circle there. The form above does not subtract the large coordinates of a far ce
 makes the arc from the start over the via point to the end a positive turn about it, so phi in (0, 2 pi) needs no case
 for arcs over half a turn. The orientation of the via point is not used. Three points define no circle where two of them
 coincide or all are on a line: refused (RBL416) when their triangle is flatter than ``FLATTEST``.
+
+A spline passes taught poses, orientations included: ``runtime.motion.spline_path``.
 
 Made by the planner for each move; poses T base <- tool, m and rad.
 """
@@ -46,6 +48,7 @@ from runtime.core.frames import (
 from runtime.core.linear import dot, matmul, norm
 from runtime.core.rounding import beside
 from runtime.core.units import MM
+from runtime.motion.spline_path import SplinePath
 from runtime.settings.profile import PostureLaw
 
 FLATTEST = 1e-6
@@ -227,7 +230,7 @@ class ArcPath:
         return np.asarray(np.where(beside, on_circle, np.minimum(*to_ends)))
 
 
-Path: TypeAlias = LinePath | ArcPath
+Path: TypeAlias = LinePath | ArcPath | SplinePath
 
 
 def _shortest_turns(turn: float) -> tuple[float, ...]:

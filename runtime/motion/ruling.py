@@ -1,8 +1,8 @@
 """Which limit rules a planned move, and the time of its programmed speed alone: for findings and warnings.
 
 A move is bound by its programmed speed and the accelerations of the path, and by more: the turning of the tool, the
-curvature of an arc, the joints. The first alone gives the time that a reader of the program expects; a path that is too
-short to reach its speed takes that time, too. Of the others the one that needs the longest time rules. SI, rad.
+curvature of the path, the joints. The first alone gives the time that a reader of the program expects; a path that is
+too short to reach its speed takes that time, too. Of the others the one that needs the longest time rules. SI, rad.
 Called after planning, for moves that take longer than programmed (docs/decisions/0030).
 """
 
@@ -15,7 +15,7 @@ from runtime.core.frames import Array
 from runtime.core.units import DEG, MM
 from runtime.motion.cartesian_planner import MovePlan, arc_limits
 from runtime.motion.commands import Command, MoveJoint
-from runtime.motion.path import ArcPath, Path
+from runtime.motion.path import LinePath, Path
 from runtime.motion.time_scaling import Slowdown
 from runtime.motion.velocity_profile import bound, shortest_s
 from runtime.robot.model.drives import PathLimits
@@ -137,8 +137,8 @@ def _turning(times: _Times, path: Path, moves: bool) -> _Bound | None:
 
 
 def _curving(times: _Times, path: Path, moves: bool) -> _Bound | None:
-    """Return the curvature of an arc, whose acceleration towards the centre bounds the speed; None on a line."""
-    if not (isinstance(path, ArcPath) and moves):
+    """Return the curvature of a path, whose acceleration towards the centre bounds the speed; None on a line."""
+    if isinstance(path, LinePath) or not moves:
         return None
     share, limits = times.command.acceleration, times.limits
     on_arc, _ = arc_limits(times.speed, limits.acceleration * share, limits.jerk * share, path.radius)

@@ -7,7 +7,7 @@ the travel, Y = X x gravity, Z = X x Y, the tool's posture is (Rx, Ry, Rz) = (ti
     (104) B  = [Xm Ym Zm]' R_base_tool                        B = Rz(Rz) Ry(Ry) Rx(Rx)
     (105) Rx = atan2(B32, B33)   (106) Ry = atan2(-B31, hypot(B11, B21))   (107) Rz = atan2(B21, B11)
 
-Travel is vertical: Ym is the base's Y. On an arc the travel is the tangent, and the frame turns with it.
+Travel is vertical: Ym is the base's Y. On an arc or a spline the travel is the tangent, and the frame turns with it.
 
 In every cycle each wrist axis has ``CANDIDATES`` angles between the straight line of S8 and what its speed allows,
 never past the end angle:
@@ -33,7 +33,7 @@ import numpy as np
 from runtime.core.frames import Array, frozen
 from runtime.core.linear import matmul, norm
 from runtime.motion.commands import Component
-from runtime.motion.path import ArcPath, Path
+from runtime.motion.path import LinePath, Path
 from runtime.motion.wrist.switch import WristLaw
 from runtime.robot.kinematics.frozen_wrist import WRIST_AXES, FrozenWrist, Side
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -62,9 +62,9 @@ def weld_line_frame(travel: Array) -> Array:
 
 def frames_along(path: Path, s: Array) -> Array:
     """Return R_base_line of a path at s (N,): (3, 3) where it is one for all of it, else (N, 3, 3)."""
-    if isinstance(path, ArcPath):
-        return np.stack([weld_line_frame(travel) for travel in path.travel(s)])
-    return weld_line_frame(path.X_end[:3, 3] - path.X_start[:3, 3])
+    if isinstance(path, LinePath):
+        return weld_line_frame(path.X_end[:3, 3] - path.X_start[:3, 3])
+    return np.stack([weld_line_frame(travel) for travel in path.travel(s)])
 
 
 def posture_components(R_base_line: Array, R_base_tool: Array) -> Array:

@@ -14,9 +14,12 @@ SCRIPT = """
 import hashlib, sys
 import numpy as np
 import robolang
+from runtime.motion.spline import Spline
 
 rows = np.random.default_rng(1).standard_normal((2, 1000))
 print(hashlib.sha256(np.dot(*rows).tobytes()).hexdigest())
+cubics = Spline.through(np.arange(200.0) ** 1.1, rows[:, :700].reshape(200, 7)).cubics
+print(hashlib.sha256(cubics.tobytes()).hexdigest())
 for program in sys.argv[1:]:
     result = robolang.run(program)
     assert result.ok
@@ -29,7 +32,7 @@ for program in sys.argv[1:]:
 
 @pytest.fixture(scope="module")
 def hashes():
-    """By kernel: the hash of a plain scalar product of numpy, and of the log of every program."""
+    """By kernel: the hash of a plain scalar product of numpy, of a spline, and of the log of every program."""
     started = {
         kernel: subprocess.Popen(
             [sys.executable, "-c", SCRIPT, *PROGRAMS],
@@ -46,6 +49,6 @@ def test_logs_do_not_depend_on_the_kernel(hashes):
     plain = {found[0] for found in hashes.values()}
     if len(plain) == 1:
         pytest.skip("this OpenBLAS has one kernel for all processors")
-    assert all(len(found) == 1 + len(PROGRAMS) for found in hashes.values())
-    for index, program in enumerate(PROGRAMS, start=1):
+    assert all(len(found) == 2 + len(PROGRAMS) for found in hashes.values())
+    for index, program in enumerate(("a spline", *PROGRAMS), start=1):
         assert len({found[index] for found in hashes.values()}) == 1, program
