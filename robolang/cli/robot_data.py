@@ -60,6 +60,7 @@ def _axis(axis: AxisSpec) -> dict[str, Any]:
         kind.range_key: [limits.lower / kind.size, limits.upper / kind.size],
         kind.speed_key: limits.speed / kind.size,
         kind.acceleration_key: limits.acceleration / kind.size,
+        kind.jerk_key: limits.jerk / kind.size,
         kind.force_key: limits.torque,
         **_body(axis.body),
         "motor": {

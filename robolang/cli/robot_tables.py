@@ -111,11 +111,12 @@ def _table(title: str, *headings: str) -> Table:
 
 
 def limits(spec: "RobotSpec") -> Table:
-    """Return ranges, speeds, accelerations and torques."""
+    """Return ranges, speeds, accelerations, jerks and torques."""
     units = list(dict.fromkeys(axis.kind.unit for axis in spec.axes))
-    range_, speed, rate = (", ".join(f"{unit}{per}" for unit in units) for per in ("", "/s", "/s2"))
-    force = ", ".join(dict.fromkeys(axis.kind.force for axis in spec.axes))
-    table = _table("Limits", f"range\n{range_}", f"speed\n{speed}", f"accel\n{rate}", f"torque\n{force}")
+    range_, speed, rate, jerk = (",\n".join(f"{unit}{per}" for unit in units) for per in ("", "/s", "/s2", "/s3"))
+    force = ",\n".join(dict.fromkeys(axis.kind.force for axis in spec.axes))
+    headings = (f"range\n{range_}", f"speed\n{speed}", f"accel\n{rate}", f"jerk\n{jerk}", f"torque\n{force}")
+    table = _table("Limits", *headings)
     for index, axis in enumerate(spec.axes, start=1):
         limits, kind, shown = axis.limits, axis.kind, _Marked(spec, index - 1)
         # the unit of a row where the heading has two
@@ -125,6 +126,7 @@ def limits(spec: "RobotSpec") -> Table:
             shown(kind.range_key, f"{limits.lower / kind.size:g} .. {limits.upper / kind.size:g}{own}"),
             shown(kind.speed_key, limits.speed / kind.size),
             shown(kind.acceleration_key, limits.acceleration / kind.size),
+            shown(kind.jerk_key, limits.jerk / kind.size),
             shown(kind.force_key, limits.torque),
         )
     return table

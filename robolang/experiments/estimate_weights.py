@@ -176,13 +176,17 @@ def _coulomb(motor: Motor, scale: float) -> Motor:
 
 
 _SPEED = _limits(lambda own, scale: own.replaced(speed=own.speed * scale))
-_ACCELERATION = _limits(lambda own, scale: own.replaced(acceleration=own.acceleration * scale))
+# the time in which an acceleration builds up stays
+_ACCELERATION = _limits(lambda own, scale: own.replaced(acceleration=own.acceleration * scale, jerk=own.jerk * scale))
+_JERK = _limits(lambda own, scale: own.replaced(jerk=own.jerk * scale))
 _CHANGES: Mapping[str, Change] = {
     "mass_kg": _body,
     "max_speed_deg_s": _SPEED,
     "max_speed_mm_s": _SPEED,
     "max_acceleration_deg_s2": _ACCELERATION,
     "max_acceleration_mm_s2": _ACCELERATION,
+    "max_jerk_deg_s3": _JERK,
+    "max_jerk_mm_s3": _JERK,
     "max_torque_nm": _torque,
     "max_force_n": _torque,
     "motor.gear_ratio": _motor(lambda own, scale: own.replaced(gear_ratio=own.gear_ratio * scale)),

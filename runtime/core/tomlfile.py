@@ -430,8 +430,7 @@ class Table:
         for key in self._data:
             if key in self._asked or _closest(key, missing):
                 continue  # reported with the missing key that it resembles: one mistake, one message
-            # keys that are not there first: one that is there is hardly what this one was meant to be
-            near = _near(key, self._asked - set(self._data)) or _closest(key, self._asked)
+            near = _near(key, self._asked, self._data)
             hint = f"did you mean '{near}'?" if near else f"known here: {', '.join(sorted(self._asked))}"
             fault = self.fault("RBL609", f"'{self.name(key)}' is not a key of this file", hint, key=key)
             if self._gathered is None:
@@ -439,9 +438,10 @@ class Table:
             self._gathered.append(fault)
 
 
-def _near(key: str, free: AbstractSet[str]) -> str:
+def _near(key: str, known: AbstractSet[str], there: Iterable[str]) -> str:
     """Return the key that an unknown one may stand for, or nothing; ``position`` may stand for ``pose``."""
-    close = _closest(key, free)
+    free = known - set(there)  # first: a key that is there is hardly what this one was meant to be
+    close = _closest(key, free) or _closest(key, known)
     begins = [] if close or len(key) < 3 else sorted(each for each in free if each[:3] == key[:3])
     return close or next(iter(begins), "")
 

@@ -6,8 +6,8 @@ With d_i the turn of joint i, and v_i, a_i what the move may use of its limits, 
 
     ds/dt <= min v_i / d_i,    d2s/dt2 <= min a_i / d_i,    d3s/dt3 <= min a_i / (RISE_S d_i)
 
-Robot files have no jerk limit of joints: an acceleration builds up in ``RISE_S``, as on the paths of the built-in
-robots (30 m/s3 to 3 m/s2). The command keeps to what s keeps to (``fine_interpolator``).
+An acceleration builds up in ``RISE_S``, as on the paths of the built-in robots (30 m/s3 to 3 m/s2). The command keeps
+to what s keeps to (``fine_interpolator``).
 
 Where only a pose is given, its solutions are those of all configurations, each joint turned into its range. Of those
 that fit what the point is taught with, those in which the arm keeps the configuration that it is in come first; of
@@ -35,11 +35,9 @@ from runtime.motion.taught_end import as_taught, turned
 from runtime.motion.time_scaling import Pace
 from runtime.motion.velocity_profile import SpeedLimits, bound
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics, Solution
+from runtime.robot.model.drives import RISE_S
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
-
-RISE_S = 0.1
-"""Time in which the acceleration of a joint builds up, s."""
 
 SAME_TIME_S = 1e-9
 """Solutions whose times differ by less, s, are equally soon: rounding must not decide between them."""

@@ -26,12 +26,13 @@ from runtime.motion.chain.corner import Corner
 from runtime.motion.chain.timing import Limits
 from runtime.motion.chaining import ChainLimits, Joined, joined
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
-from runtime.motion.joint_planner import RISE_S, JointPlanner
+from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.path import Path
 from runtime.motion.path_ik import Arm
 from runtime.motion.speed_cap import PLANNED, SpeedCap
 from runtime.motion.time_scaling import Pace
 from runtime.robot.kinematics.kinematics import Kinematics
+from runtime.robot.model.drives import RISE_S
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 

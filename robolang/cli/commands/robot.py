@@ -123,8 +123,9 @@ def import_model(file: _Model, options: _SidecarOptions) -> None:
             raise Fault("RBL706", f"{target} exists already", "Give another name with -o, or --force to replace it.")
         write_atomic(target, lambda stream: stream.write(text))
         if options.estimate:
-            echo(safe(f"wrote {target}: {len(estimates)} values are estimates, each with its rule"))
-            _say_weights(with_sidecar(read_source(file), read_sidecar(Source(str(target), text.decode()), file.name)))
+            spec = with_sidecar(read_source(file), read_sidecar(Source(str(target), text.decode()), file.name))
+            echo(safe(f"wrote {target}: {len(spec.estimated)} values are estimates, each with its rule"))
+            _say_weights(spec)
         else:
             gaps = text.count(b"MISSING:")
             echo(safe(f"wrote {target}: {gaps} values to fill in, marked MISSING"))

@@ -58,7 +58,7 @@ class ModelFile(Record):
 
     @property
     def warnings(self) -> tuple[FileFault, ...]:
-        """Doubts about the ranges, speeds and gears of its sidecar (RBL627, RBL629)."""
+        """Doubts about the ranges, speeds, jerks and gears of its sidecar (RBL627 to RBL629)."""
         return () if self.sidecar is None else doubt_axes(self.sidecar.axes)
 
 

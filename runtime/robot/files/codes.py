@@ -45,13 +45,15 @@ register(
     Code(
         code="RBL627",
         name="angle-unlikely",
-        meaning="A joint range or speed in a robot file is one that no known arm has; probably its unit is wrong.",
+        meaning="A joint range, speed or jerk in a robot file is one that no known arm has; probably its unit is "
+        "wrong.",
         remedy="Check the unit: radians in a URDF, degrees in a robot file in TOML and usually in MJCF.",
     ),
     Code(
         code="RBL628",
         name="length-unlikely",
-        meaning="A length or a direction in a robot file is one that no known arm has; probably its unit is wrong.",
+        meaning="A length, a direction, or the speed or jerk of an axis that slides is one that no known arm has; "
+        "probably its unit is wrong.",
         remedy="Check the unit: lengths of a robot file are in m.",
     ),
     Code(

@@ -188,7 +188,7 @@ def _provisional(known: Known, bodies: Sequence[Body]) -> RobotSpec:
         current_bandwidth=1.0,
     )
     limits = [
-        Limits(lower=float(low), upper=float(high), speed=1.0, acceleration=1.0, torque=1.0, kind=kind)
+        Limits(lower=float(low), upper=float(high), speed=1.0, acceleration=1.0, jerk=1.0, torque=1.0, kind=kind)
         for low, high, kind in zip(known.lower, known.upper, known.kinds, strict=True)
     ]
     axes = tuple(

@@ -94,4 +94,5 @@ def _of_urdf(joint: Element) -> tuple[float, float]:
 
 def _limits(ends: tuple[float, float], kind: AxisKind) -> Limits:
     lower, upper = ends
-    return Limits(lower=lower, upper=upper, speed=math.inf, acceleration=math.inf, torque=math.inf, kind=kind)
+    rest = math.inf
+    return Limits(lower=lower, upper=upper, speed=rest, acceleration=rest, jerk=rest, torque=rest, kind=kind)

@@ -8,6 +8,8 @@ no numerics, in ``body_plausibility`` lengths, bodies and torques. The bounds (d
              or below ``LEAST_ANGLE`` a second: degrees for radians, radians for degrees, a conversion made twice
     RBL628   of a joint that slides, a range of more than ``LONGEST_TRAVEL`` to a side, or within ``LEAST_TRAVEL``; a
              speed above ``FASTEST_SLIDE`` or below ``LEAST_TRAVEL`` a second: mm for m, m for mm
+    RBL627   of a joint that turns, RBL628 of one that slides: an acceleration that takes more than ``SLOWEST_RISE`` to
+             build up at the jerk limit
     RBL629   a gear ratio below 1
 
 Units that differ by less than a factor of about ten (lb, inches) look like a light or a small arm. Read at start.
@@ -22,7 +24,7 @@ from runtime.core.tomlfile import FileFault, Table
 from runtime.core.units import DEG
 from runtime.robot.model import drives
 from runtime.robot.model.axis_kind import PRISMATIC, REVOLUTE, AxisKind
-from runtime.robot.model.drives import Limits, Motor, joint_label
+from runtime.robot.model.drives import RISE_S, Limits, Motor, joint_label
 
 MOST_TURNS = 2.0 * 2.0 * math.pi
 """Two turns to either side, rad: cables end earlier."""
@@ -34,7 +36,9 @@ LONGEST_TRAVEL, LEAST_TRAVEL = 15.0, 2e-3
 """Travel of an axis that slides to one side, m: rails of cells are shorter; 2 m taken as mm."""
 FASTEST_SLIDE = 20.0
 """Fastest axis that slides, m/s: linear motors have up to 10."""
-What = Literal["range", "speed", "torque", "body", "length", "gear"]
+SLOWEST_RISE = 1.0
+"""Longest time in which an acceleration builds up, s: heavy arms take some 0.3 s."""
+What = Literal["range", "speed", "jerk", "torque", "body", "length", "gear"]
 Place = Callable[[What, int], Callable[[str, str, str], FileFault]]
 """``place(what, axis)(code, message, hint)`` is a fault at the place of a value of an axis (0-based)."""
 
@@ -184,12 +188,12 @@ class Driven(Protocol):
 
 
 def doubt_axes(axes: Sequence[Driven]) -> tuple[FileFault, ...]:
-    """Return the doubts about ranges, speeds (RBL627, RBL628) and gears (RBL629) of axes in TOML tables."""
+    """Return the doubts about ranges, speeds, jerks (RBL627, RBL628) and gears (RBL629) of axes in TOML tables."""
     labels = [joint_label(k, axis.name) for k, axis in enumerate(axes)]
     joints = [_moving(label, axis.limits) for label, axis in zip(labels, axes, strict=True)]
     place = in_tables([axis.table for axis in axes])
     # these files are in degrees and mm by their keys; only a URDF or MJCF may be in radians or m
-    doubts = doubt_moving(joints, place)
+    doubts = [*doubt_moving(joints, place), *_doubt_jerks(labels, [axis.limits for axis in axes], place)]
     # gears of arms reduce: a ratio below 1 is most likely joint turns per motor turn
     slow = [k for k, axis in enumerate(axes) if not (abs(axis.motor.gear_ratio) >= 1.0 or axis.limits.kind.slides)]
     if slow:
@@ -197,6 +201,23 @@ def doubt_axes(axes: Sequence[Driven]) -> tuple[FileFault, ...]:
         hint = "write motor turns per joint turn: 100 for 100:1, not 0.01"
         doubts.append(place("gear", slow[0])("RBL629", f"gears make the motor slower than the joint: {listed}", hint))
     return tuple(doubts)
+
+
+def _doubt_jerks(labels: Sequence[str], limits: Sequence[Limits], place: Place) -> list[FileFault]:
+    """Return the doubts about jerks so small that an acceleration is hardly reached, one for each kind of axis."""
+    doubts = []
+    for kind, code in _CODES.items():
+        slow = [k for k, own in enumerate(limits) if own.kind is kind and own.acceleration > SLOWEST_RISE * own.jerk]
+        if slow:
+            listed = ", ".join(_jerk(labels[k], limits[k]) for k in slow)
+            message = f"jerks build up an acceleration in more than {SLOWEST_RISE:g} s: {listed}"
+            hint = f"Check them; the file has {kind.unit}/s3. Without {kind.jerk_key} it takes {RISE_S:g} s."
+            doubts.append(place("jerk", slow[0])(code, message, hint))
+    return doubts
+
+
+def _jerk(label: str, own: Limits) -> str:
+    return f"{label} {own.jerk / own.kind.size:.6g} {own.kind.unit}/s3 = {own.acceleration / own.jerk:.3g} s"
 
 
 def _moving(label: str, own: Limits) -> Moving:
@@ -209,6 +230,7 @@ def _keys(what: What, table: Table) -> tuple[str, ...]:
     keys: dict[What, tuple[str, ...]] = {
         "range": (kind.range_key,),
         "speed": (kind.speed_key,),
+        "jerk": (kind.jerk_key,),
         "torque": (kind.force_key,),
         "body": ("mass_kg",),
         "length": (),

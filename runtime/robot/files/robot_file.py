@@ -8,6 +8,7 @@ key, and so is a key that nothing reads. The geometry comes as Denavit-Hartenber
 """
 
 import math
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 from typing import Literal, cast
@@ -17,7 +18,8 @@ from runtime.core.tomlfile import FileFault, Source, Table
 from runtime.robot.files.marks import load_marked
 from runtime.robot.files.plausibility import doubt_axes
 from runtime.robot.model import drives
-from runtime.robot.model.drives import Bandwidths, Limits, Motor, PathLimits
+from runtime.robot.model.drives import RISE_S, Bandwidths, Limits, Motor, PathLimits
+from runtime.robot.model.estimated import axis_key
 
 SCHEMA = 1
 MOST_AXES = 7
@@ -97,7 +99,7 @@ class RobotFile(Record):
     """A robot file; ``flange`` is given in the form of lines only. ``table`` is the whole file, for places.
 
     ``link_radii`` m are those of the capsules that stand for the links; empty: the file gives none. ``estimated`` has
-    the rules of the values that are marked as estimates (``marks``).
+    the rules of the values that are marked as estimates (``marks``), and of jerk limits that the file does not state.
     """
 
     name: str
@@ -114,14 +116,19 @@ class RobotFile(Record):
     table: Table
 
     @property
+    def drives(self) -> tuple[AxisDrive, ...]:
+        """Drive and limits of every axis."""
+        return tuple(axis.drive for axis in self.axes)
+
+    @property
     def limits(self) -> tuple[Limits, ...]:
         """Limits of every axis."""
-        return tuple(axis.drive.limits for axis in self.axes)
+        return tuple(drive.limits for drive in self.drives)
 
     @property
     def warnings(self) -> tuple[FileFault, ...]:
-        """Doubts about ranges, speeds and gears (RBL627, RBL629); those about bodies need numerics."""
-        return doubt_axes([axis.drive for axis in self.axes])
+        """Doubts about ranges, speeds, jerks and gears (RBL627 to RBL629); those about bodies need numerics."""
+        return doubt_axes(self.drives)
 
 
 def library() -> list[str]:
@@ -177,7 +184,7 @@ def parse(source: Source) -> RobotFile:
         table.fail("RBL615", f"the closed form is for 6 axes, not {len(tables)}", key="kinematics")
     if opw is not None and any(axis.drive.limits.kind.slides for axis in found.axes):
         table.fail("RBL615", "the closed form is for axes that turn", key="kinematics")
-    return found.replaced(estimated=marked.estimated())
+    return found.replaced(estimated={**marked.estimated(), **estimated_jerks(found.drives)})
 
 
 def rated_payload(table: Table) -> float:
@@ -214,6 +221,13 @@ def axis_drive(table: Table) -> AxisDrive:
     )
     table.done()
     return found
+
+
+def estimated_jerks(axes: Iterable[AxisDrive]) -> dict[str, str]:
+    """Return the rule of each jerk limit that a file does not state, by the name that it would have there."""
+    rule = f"full acceleration after {RISE_S:g} s"
+    keys = [(axis.limits.kind.jerk_key, axis.table) for axis in axes]
+    return {axis_key(k, key): rule for k, (key, table) in enumerate(keys) if key not in table}
 
 
 def _axis(table: Table, form: Literal["dh", "lines"], names: set[str]) -> AxisFile:

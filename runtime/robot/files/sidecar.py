@@ -28,7 +28,7 @@ from runtime.robot.files.sidecar_file import (
     whole_groups,
 )
 from runtime.robot.model.axis_kind import REVOLUTE, AxisKind
-from runtime.robot.model.drives import joint_label
+from runtime.robot.model.drives import RISE_S, joint_label
 from runtime.robot.model.spec import AxisSpec, Correction, RobotSpec
 
 TYPED = 1e-9
@@ -115,6 +115,8 @@ _TO_FILL_IN = (
     "# A line marked MISSING is refused until it is filled in: take the '#' before the key away and write the value."
 )
 _ESTIMATED = "# {{ estimate = ... }} is an estimate by its rule. Write the real value in its place: key = value."
+# not written as an estimate: its value would stay where somebody states another acceleration
+_JERK = f"# {{key}} = ...  # {{unit}}; without it the acceleration builds up in {RISE_S:g} s: an estimate"
 _BODY_UNITS = {"mass_kg": "kg", "cog_m": "m, in the frame of the axis", "inertia_kg_m2": "xx, yy, zz, xy, xz, yz"}
 
 
@@ -139,6 +141,7 @@ def _axis_lines(index: int, axis: ImportedAxis, gaps: "_Gaps") -> list[str]:
     lines = ["", f"# J{index + 1}", "[[axes]]", f"name = {quoted(axis.name)}"]
     lines += [f"kind = {quoted(kind.name)}"] if kind.slides else []
     lines += _limit_lines(axis, gaps)
+    lines += [_JERK.format(key=kind.jerk_key, unit=f"{kind.unit}/s3")]
     lines += gaps.some(_BODY_UNITS)
     radius = gaps.some({"link_radius_mm": "of the link, to check the arm against itself"})
     lines += radius or ["# link_radius_mm = ...  # of the link, of all axes or none: to check the arm against itself"]

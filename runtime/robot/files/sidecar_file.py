@@ -14,7 +14,7 @@ from runtime.core.record import Record
 from runtime.core.tomlfile import FileFault, Source, Table
 from runtime.robot.files.gaps import listed, whole
 from runtime.robot.files.marks import load_marked
-from runtime.robot.files.robot_file import INERTIA_FORMS, AxisDrive, axis_drive, rated_payload
+from runtime.robot.files.robot_file import INERTIA_FORMS, AxisDrive, axis_drive, estimated_jerks, rated_payload
 from runtime.robot.model import drives
 from runtime.robot.model.axis_kind import PRISMATIC, REVOLUTE, AxisKind
 from runtime.robot.model.drives import PathLimits
@@ -56,7 +56,7 @@ ESTIMATED_KEYS = (PAYLOAD_KEY, "path", "axes")
 
 
 def limit_keys(kind: AxisKind) -> dict[str, str]:
-    """Return the keys of the limits of an axis, with their units."""
+    """Return the keys of the limits of an axis that a sidecar must have, with their units."""
     return {
         kind.range_key: f"[lower, upper], {kind.unit}",
         kind.speed_key: f"{kind.unit}/s",
@@ -149,7 +149,8 @@ def body_row(axis: Table) -> BodyRow | None:
 class SidecarFile(Record):
     """A sidecar that is filled in; texts that it does not have are empty. ``table`` is the whole file.
 
-    ``estimated`` has the rules of the values that are marked as estimates (``marks``).
+    ``estimated`` has the rules of the values that are marked as estimates (``marks``), and of jerk limits that the file
+    does not state.
     """
 
     title: str
@@ -196,7 +197,7 @@ def read_sidecar(source: Source, model: str, estimates: Mapping[str, Any] = Mapp
     )
     table.text("flange", "")  # read by ``read_overlay``; named here so that it is a known key
     table.done()
-    return found
+    return found.replaced(estimated={**found.estimated, **estimated_jerks(found.axes)})
 
 
 def _axis(table: Table) -> AxisDrive:

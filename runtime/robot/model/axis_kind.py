@@ -18,8 +18,8 @@ class AxisKind(Record):
 
     ``unit`` is what people type and read, ``size`` the same in SI; ``coordinate``, ``force`` and ``inertia`` are SI
     units, of a position, of what moves the link and of what resists it. No axis goes
-    further to a side than ``widest`` rad or m. The keys of files are those of range, speed, acceleration, force, of the
-    spring and the damper of the gear, and of the ``transmission`` between motor and axis.
+    further to a side than ``widest`` rad or m. The keys of files are those of range, speed, acceleration, jerk, force,
+    of the spring and the damper of the gear, and of the ``transmission`` between motor and axis.
     """
 
     name: KindName
@@ -32,6 +32,7 @@ class AxisKind(Record):
     range_key: str
     speed_key: str
     acceleration_key: str
+    jerk_key: str
     force_key: str
     stiffness_key: str
     damping_key: str
@@ -76,6 +77,7 @@ REVOLUTE = AxisKind(
     range_key="range_deg",
     speed_key="max_speed_deg_s",
     acceleration_key="max_acceleration_deg_s2",
+    jerk_key="max_jerk_deg_s3",
     force_key="max_torque_nm",
     stiffness_key="joint_stiffness_nm_rad",
     damping_key="joint_damping_nm_s_rad",
@@ -92,6 +94,7 @@ PRISMATIC = AxisKind(
     range_key="range_mm",
     speed_key="max_speed_mm_s",
     acceleration_key="max_acceleration_mm_s2",
+    jerk_key="max_jerk_mm_s3",
     force_key="max_force_n",
     stiffness_key="joint_stiffness_n_m",
     damping_key="joint_damping_n_s_m",

@@ -27,6 +27,9 @@ WIDEST = REVOLUTE.widest
 FASTEST_LOOP = 8000.0
 """No loop is stable beyond this at the shortest servo period: bandwidth times 0.25 ms is 2, 1/s (see ``project``)."""
 
+RISE_S = 0.1
+"""Time in which the acceleration of a joint builds up, s, where its robot file has no jerk limit."""
+
 
 class Motor(Record):
     """The drive of one axis, motor side.
@@ -79,16 +82,18 @@ class Motor(Record):
 
 
 class Limits(Record):
-    """Joint limits: range rad, speed rad/s, acceleration rad/s2, torque N m (at the joint), or m, m/s, m/s2 and N.
+    """Joint limits: range rad, speed rad/s, acceleration rad/s2, jerk rad/s3, torque N m (at the joint), or m and N.
 
-    ``kind`` says which. ``rated_moment`` N m and ``rated_inertia`` kg m2 that a payload may have about the axis; None:
-    not published (``runtime.robot.kinematics.wrist_load`` estimates them).
+    ``kind`` says which. ``jerk`` is the acceleration over ``RISE_S`` where the file has none. ``rated_moment`` N m and
+    ``rated_inertia`` kg m2 that a payload may have about the axis; None: not published
+    (``runtime.robot.kinematics.wrist_load`` estimates them).
     """
 
     lower: float
     upper: float
     speed: float
     acceleration: float
+    jerk: float
     torque: float
     rated_moment: float | None = None
     rated_inertia: float | None = None
@@ -194,13 +199,16 @@ def _check_spring(table: Table, motor: Motor, kind: AxisKind) -> None:
 
 
 def limits(table: Table, kind: AxisKind = REVOLUTE) -> Limits:
-    """Read the range, speed, acceleration and torque of an axis in deg and N m, or mm and N; ``FileFault`` RBL60x."""
+    """Read the range, speed, acceleration, jerk and torque of an axis in deg and N m, or mm and N; ``FileFault``."""
     lower, upper = joint_range(table, kind)
+    acceleration = table.number(kind.acceleration_key, positive=True) * kind.size
+    jerk = _optional(table, kind.jerk_key)
     return Limits(
         lower=lower,
         upper=upper,
         speed=table.number(kind.speed_key, positive=True) * kind.size,
-        acceleration=table.number(kind.acceleration_key, positive=True) * kind.size,
+        acceleration=acceleration,
+        jerk=acceleration / RISE_S if jerk is None else jerk * kind.size,
         torque=table.number(kind.force_key, positive=True),
         # what a payload weighs about an axis is a moment: a sliding axis is rated by its force alone
         rated_moment=None if kind.slides else _optional(table, "rated_moment_nm"),

@@ -11,6 +11,7 @@ _GROUPS = {
     **{kind.range_key: "ranges" for kind in KINDS.values()},
     **{kind.speed_key: "speeds" for kind in KINDS.values()},
     **{kind.acceleration_key: "accelerations" for kind in KINDS.values()},
+    **{kind.jerk_key: "jerks" for kind in KINDS.values()},
     **{kind.force_key: "torques" for kind in KINDS.values()},
     "motor": "drives",
     "servo": "loops",

@@ -15,7 +15,7 @@ def test_the_library_is_listed():
     assert max(map(len, text.splitlines())) <= 80
     rows = [line.split() for line in text.splitlines()]
     assert ["irb2400", "ABB", "IRB", "2400/10", "6", "1630", "10", "bodies,", "accelerations,"] in rows
-    assert ["manutec_r3", "Manutec", "r3", "6", "1690", "15", "ranges,", "drives,", "loops,"] in rows
+    assert ["manutec_r3", "Manutec", "r3", "6", "1690", "15", "ranges,", "jerks,", "drives,"] in rows
     found = json.loads(robolang("robot", "list", "--json").stdout)
     assert [row["name"] for row in found] == library()
     assert found[3] == {
@@ -24,7 +24,7 @@ def test_the_library_is_listed():
         "axes": 6,
         "reach_mm": 880.0,
         "rated_payload_kg": 2.5,
-        "estimated": ["speeds", "accelerations", "drives", "loops", "path limits", "link radii"],
+        "estimated": ["speeds", "accelerations", "jerks", "drives", "loops", "path limits", "link radii"],
     }
 
 
@@ -34,6 +34,7 @@ def test_a_robot_is_given_as_json(tmp_path):
     assert axis["motor"]["gear_ratio"] == 107.815
     assert axis["mass_kg"] == 17.4
     assert axis["range_deg"] == pytest.approx([-45.0, 225.0])
+    assert axis["max_jerk_deg_s3"] == pytest.approx(10 * axis["max_acceleration_deg_s2"])
     assert axis["motor"]["joint_stiffness_nm_rad"] is None
     assert found["estimated"]["axes.6.servo.position_bandwidth_rad_s"] == ""
     assert "axes.2.motor.torque_constant_nm_a" not in found["estimated"]
@@ -55,6 +56,7 @@ def test_estimates_are_marked_and_their_rules_are_listed(tmp_path):
     limits = next(row for row in rows if row[:2] == ["J1", "j1"])
     assert limits[5] == "171.887"  # the speed of the file
     assert limits[6].startswith("~")
+    assert limits[7] == f"~{10 * float(limits[6][1:]):g}"
     assert ["J6", "~35", "~140", "~500", "~131072"] in rows
     assert "motor.gear_ratio of J1 to J6 (6): motor at 315 rad/s" in " ".join(text.split())
 

@@ -27,7 +27,7 @@ def test_each_kind_of_estimate_gets_a_weight_by_runs():
     found = weights(spec)
     by_key = {weight.key: weight for weight in found}
     assert "max_speed_deg_s" not in by_key  # the file gives it
-    assert len(by_key) == 10
+    assert len(by_key) == 11
     assert [weight.factor for weight in found] == sorted((weight.factor for weight in found), reverse=True)
     torque = by_key["max_torque_nm"]
     assert (torque.what, torque.factor) == ("torque_pct", pytest.approx(2.0, rel=0.02))

@@ -1,5 +1,6 @@
 """A robot file is refused before anything is built from it: code, line, and what would mend it."""
 
+import math
 import os
 import re
 
@@ -10,6 +11,7 @@ from runtime.core.tomlfile import FileFault, Source, read_source
 from runtime.robot.files.corrections import TOKEN_MASS
 from runtime.robot.files.loader import inertia_matrix, load_builtin
 from runtime.robot.files.robot_file import library
+from runtime.robot.model.drives import RISE_S
 from runtime.robot.model.spec import inertia_defect
 from tests.messages import fields, numbers
 from tests.robolang.cli.commands import PUMA
@@ -71,6 +73,9 @@ NUMBERS = [
     ("range_deg = [-225, 45]", "range_deg = [45, 45]", "RBL607", "45"),
     ("range_deg = [-225, 45]", "range_deg = [nan, 45]", "RBL604", "axes.3.range_deg"),
     ("max_speed_deg_s = 176.0", "max_speed_deg_s = -176.0", "RBL605", "axes.3.max_speed_deg_s"),
+    ("range_deg = [-225, 45]", "max_jerk_deg_s3 = 0\nrange_deg = [-225, 45]", "RBL605", "axes.3.max_jerk_deg_s3"),
+    ("range_deg = [-225, 45]", "max_jerk_deg_s3 = nan\nrange_deg = [-225, 45]", "RBL604", "axes.3.max_jerk_deg_s3"),
+    ("range_deg = [-225, 45]", "max_jerk_deg_s2 = 9\nrange_deg = [-225, 45]", "RBL609", "axes.3.max_jerk_deg_s2"),
     ("mass_kg = 4.8", "mass_kg = -4.8", "RBL605", "axes.3.mass_kg"),
     ("mass_kg = 4.8", "mass_kg = 0", "RBL606", "J3"),
     ("mass_kg = 4.8", 'mass_kg = "4.8"', "RBL613", ""),
@@ -95,6 +100,18 @@ def test_a_wrong_value_is_refused_at_its_line(old, new, code, said):
     shifts = {"inertia_shift_kg_m2 = 0": "[axes.correction]", "inertia_shift_kg_m2 = 0.003": "inertia_kg_m2"}
     assert found.line == line_of(text, shifts.get(new, new.split(" ")[0]), ELBOW)
     assert len(found.message) < 200
+
+
+def test_a_jerk_limit_that_no_file_states_is_an_estimate_from_the_acceleration():
+    plain = parse_robot(Source("p.toml", TEXT))
+    rise = plain.per_axis("limits", "acceleration") / plain.per_axis("limits", "jerk")
+    assert rise == pytest.approx([RISE_S] * 6, rel=1e-15)
+    jerks = {f"axes.{k}.max_jerk_deg_s3" for k in range(1, 7)}
+    assert jerks <= set(plain.estimated)
+    text = changed("range_deg = [-225, 45]", "max_jerk_deg_s3 = 5400\nrange_deg = [-225, 45]")
+    stated = parse_robot(Source("p.toml", text))
+    assert stated.axes[2].limits.jerk == math.radians(5400)
+    assert jerks - set(stated.estimated) == {"axes.3.max_jerk_deg_s3"}
 
 
 REQUIRED = sorted(set(re.findall(r"^(\w+) =", TEXT[ELBOW:], re.M)))

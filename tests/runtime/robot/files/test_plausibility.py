@@ -112,6 +112,8 @@ def with_limits(text):
         ("range_deg = [-160, 160]", "range_deg = [-2.79, 2.79]", "RBL627", "range_deg"),
         ("max_speed_deg_s = 151", "max_speed_deg_s = 2.6 #", "RBL627", "max_speed_deg_s"),
         ("max_speed_deg_s = 151", "max_speed_deg_s = 9000 #", "RBL627", "max_speed_deg_s"),
+        # 1000 rad/s3 written as they are
+        ("max_speed_deg_s = 151", "max_jerk_deg_s3 = 105\nmax_speed_deg_s = 151", "RBL627", "max_jerk_deg_s3"),
         ("gear_ratio = -62.6111", "gear_ratio = -0.016", "RBL629", "gear_ratio"),
         ("mass_kg = 17.4", "mass_kg = 8700", "RBL629", "mass_kg"),
     ],

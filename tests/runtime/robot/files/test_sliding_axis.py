@@ -27,7 +27,7 @@ def test_values_are_si():
     assert axis.kind is PRISMATIC
     limits, motor = axis.limits, axis.motor
     assert (limits.lower, limits.upper, limits.speed) == pytest.approx((0.0, 0.21, 1.1))
-    assert (limits.acceleration, limits.torque) == pytest.approx((10.0, 343.0))
+    assert (limits.acceleration, limits.jerk, limits.torque) == pytest.approx((10.0, 100.0, 343.0))
     # 20 mm a turn; a rotor of 1e-5 kg m2 is (2 pi / 0.02)^2 1e-5 kg at the screw
     assert motor.gear_ratio == pytest.approx(2.0 * math.pi / 0.02)
     assert motor.reflected_inertia == pytest.approx((2.0 * math.pi / 0.02) ** 2 * 1e-5)
@@ -47,6 +47,7 @@ def test_a_bound_in_degrees_holds_as_so_many_mm():
         ("range_mm = [0, 210]", "range_mm = [210, 0]", "RBL607", "range_mm"),
         ("range_mm = [0, 210]", "range_mm = [0, 21000]", "RBL605", "range_mm"),
         ("max_force_n = 343", "max_torque_nm = 343", "RBL608", "max_force_n"),
+        ("max_force_n = 343", "max_force_n = 343\nmax_jerk_deg_s3 = 9", "RBL609", "max_jerk_deg_s3"),
         ("travel_mm_per_turn = 20", "gear_ratio = 20", "RBL608", "travel_mm_per_turn"),
         ("travel_mm_per_turn = 20", "travel_mm_per_turn = 0", "RBL605", "travel_mm_per_turn"),
         ("travel_mm_per_turn = 20", "travel_mm_per_turn = nan", "RBL604", "travel_mm_per_turn"),

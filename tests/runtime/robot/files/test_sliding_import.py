@@ -123,12 +123,16 @@ def test_a_template_is_filled_in_by_the_keys_of_each_axis(tmp_path):
             max_acceleration_mm_s2="5000",
             max_force_n="700",
             travel_mm_per_turn="-20",
-        )
+        ).replace("# max_jerk_mm_s3 = ...", "max_jerk_mm_s3 = 40000", 1)
     )
     spec = load_file(path)
     assert spec.undriven is None
     assert spec.axes[0].motor.gear_ratio == pytest.approx(-2 * math.pi / 0.02)
     assert spec.axes[0].limits.acceleration == pytest.approx(5.0)
+    assert spec.per_axis("limits", "jerk")[:2] == pytest.approx([40.0, 10.0 * spec.axes[1].limits.acceleration])
+    jerks = {name for name in spec.estimated if "jerk" in name}
+    assert {"axes.2.max_jerk_deg_s3", "axes.3.max_jerk_mm_s3"} <= jerks
+    assert "axes.1.max_jerk_mm_s3" not in jerks
     assert spec.axes[1].motor.gear_ratio == 100.0
 
 
