@@ -9,7 +9,9 @@
 # make plots   the plots of docs/servo.md, drawn anew
 # make fault-campaign         every injected fault and 200 clean runs, counted (minutes)
 # make supervision-campaign   wrong payloads in random programs, counted
-# make blend-campaign         random chains of moves with zones, counted
+# make blend-campaign         2,000 random chains of moves with zones, counted (half an hour)
+# make stop-campaign          chains stopped at random cycles, counted (minutes)
+# make gcode-campaign         milling programs in G-code of the folder LINUXCNC_PROGRAMS, planned and compared (minutes)
 # make jog-campaign           random jogs with held keys and stops, their logs checked (20 minutes)
 # make pulse-campaign         random moves of four machines as pulse tables, counted
 # make wrist-campaign         random straight moves through the wrist, counted (minutes)
@@ -100,6 +102,12 @@ verdict-campaign: $(READY)
 
 blend-campaign: $(READY)
 	$(BIN)/python -m tests.bench.blend_campaign
+
+stop-campaign: $(READY)
+	$(BIN)/python -m tests.bench.stop_campaign
+
+gcode-campaign: $(READY)
+	$(BIN)/python -m tests.bench.gcode_campaign
 
 jog-campaign: $(READY)
 	$(BIN)/python -m tests.bench.jog_campaign

@@ -27,6 +27,7 @@ CLOCKS = {
 """Functions that read a clock or wait for one, by module; those that end in ``_ns`` too."""
 MEASURING = {
     "bench/check.py",
+    "bench/gcode_campaign.py",
     "bench/inertia.py",
     "bench/live.py",
     "bench/pages.py",

@@ -16,6 +16,7 @@ from tests.bench import (
     check,
     figures,
     frames,
+    gcode_campaign,
     inertia,
     jog_campaign,
     live,
@@ -26,6 +27,7 @@ from tests.bench import (
     prompt,
     pulse_campaign,
     run,
+    stop_campaign,
     wrist_campaign,
 )
 from tests.bench.figures import Row
@@ -41,6 +43,8 @@ BENCHES = {
     "make fault-campaign": (campaign.fault_rows,),
     "make supervision-campaign": (campaign.payload_rows,),
     "make blend-campaign": (blend_campaign.rows,),
+    "make stop-campaign": (stop_campaign.rows,),
+    "make gcode-campaign": (gcode_campaign.rows,),
     "make jog-campaign": (jog_campaign.rows,),
     "make pulse-campaign": (pulse_campaign.rows,),
     "make wrist-campaign": (wrist_campaign.rows,),

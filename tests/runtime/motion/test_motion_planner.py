@@ -11,7 +11,6 @@ from runtime.motion.cartesian_planner import EXCEPTION, CartesianPlanner
 from runtime.motion.chain.timing import Timed, timed
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.motion_planner import ChainFault, ChainPlan
-from tests.campaign import size
 from tests.runtime.motion.motions import (
     ON_PATH,
     ROBOTS,
@@ -23,8 +22,6 @@ from tests.runtime.motion.motions import (
     off_path,
     random_chain,
 )
-
-CHAINS, MOVES = size(34, 8), 5
 
 
 def by(robot: Bench, *steps, zone: float = 0.0, **options) -> list[Command]:
@@ -46,25 +43,6 @@ def speeds(robot: Bench, q: np.ndarray) -> np.ndarray:
 
 
 RIGHT_ANGLE = ((0.0, 0.15, 0.0), (0.0, 0.0, 0.15))
-
-
-@pytest.mark.parametrize("name", ROBOTS)
-def test_random_chains_keep_every_limit_leave_paths_only_in_zones_and_take_no_longer(name):
-    robot, random = bench(name), np.random.default_rng(4)
-    blended = 0
-    for _ in range(CHAINS):
-        start, commands = random_chain(robot, random, MOVES)
-        found = robot.planner.chain(start, commands, TOOL)
-        assert limits_broken(robot, found.setpoints) == []
-        assert blends_broken(robot, found, commands) == []
-        assert len(found.q) - 1 <= sum(len(part.plan.q) - 1 for part in found.parts)
-        for corner, command in zip(found.corners, commands, strict=False):
-            assert corner.deviation <= corner.reach <= corner.radius * (1 + 1e-9)
-            assert corner.radius == command.zone
-            blended += corner.cycles > 0
-        np.testing.assert_array_equal(found.q[0], start)
-        np.testing.assert_array_equal(found.q[-1], found.parts[-1].plan.q[-1])
-    assert blended > 0.7 * CHAINS * (MOVES - 1)
 
 
 def test_a_blend_that_leaves_its_zone_or_a_limit_would_be_noticed():
