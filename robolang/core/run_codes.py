@@ -245,8 +245,9 @@ register(
         code="RBL429",
         name="slower-than-asked",
         meaning="A move takes longer than its TIME, or does not reach its SPEED and takes more than 1.2 times as long "
-        "as SPEED alone needs: the turning of the tool, an arc or a joint limits it.",
-        remedy="Give a lower SPEED or a longer TIME, or change what the message names.",
+        "as SPEED and the acceleration of the path need: a joint, the turning of the tool, an arc or a corner limits "
+        "it.",
+        remedy="Give a lower SPEED or a longer TIME, or change what the message names: a larger ZONE, another posture.",
         found=Stage.MOTION,
     ),
     Code(

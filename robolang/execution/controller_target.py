@@ -14,7 +14,8 @@ from robolang.execution.activity import Activity, Left, Motion, Pause, TargetSna
 from robolang.execution.grasp import note_grasp
 from robolang.execution.measured import AXIS_FUNCTIONS
 from robolang.execution.observer import Observer
-from robolang.execution.plan_findings import PlanFindings, PlannedMove
+from robolang.execution.plan_findings import PlanFindings
+from robolang.execution.planned_move import planned_moves
 from robolang.execution.result import GOES_ON, RunRecord, StatementRun
 from robolang.execution.statement_rows import copied, note_rest, rest_of, row_of, straight_path
 from robolang.execution.tape import Tape
@@ -344,12 +345,10 @@ class ControllerTarget:
 
     def _warn(self, chain: Sequence[Requested], plan: ChainPlan) -> None:
         """Warn where the motion is not the one that the program states, once for a code and a statement."""
-        nexts = [*(part.plan for part in plan.parts[1:]), None]
-        for each, own, corner, after in zip(chain, plan.parts, (*plan.corners, None), nexts, strict=True):
-            effect, command = each.effect, each.command
-            move = PlannedMove(effect=effect, command=command, plan=own.plan, s=own.s, corner=corner, after=after)
+        speeds = self._record.controller.requests.speeds(plan, [each.command for each in chain])
+        for move in planned_moves(chain, plan, speeds):
             for found in self._findings.of(move):
-                origin = each.effect.origin
+                origin = move.effect.origin
                 if (found.code, origin) not in self._warned:
                     # replaced and not added to: snapshots share the set
                     self._warned |= {(found.code, origin)}

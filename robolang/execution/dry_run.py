@@ -47,6 +47,7 @@ from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.corner import Corner
 from runtime.motion.commands import Command
+from runtime.motion.speeds import Speeds
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
 
@@ -57,7 +58,8 @@ class RehearsedMove:
 
     ``q`` (K, n) rad is where it goes, corners included, ``s`` (K,) the share of its path. Row 0 is sent at ``sent_us``:
     when the move begins, or in the cycle before it where it follows another. ``payload`` is the one declared last,
-    ``corner`` what became of the corner to the next move, None where it stops.
+    ``corner`` what became of the corner to the next move, None where it stops. ``speeds`` are those of its chain, in
+    which it is move ``number``.
     """
 
     effect: MoveTo
@@ -71,6 +73,8 @@ class RehearsedMove:
     X_flange_tool: Array
     payload: Payload
     corner: Corner | None
+    speeds: Speeds
+    number: int
 
     def share(self, row: int) -> float:
         """Return how far the move has come at a row of ``q``, in % of its path."""
@@ -212,14 +216,15 @@ class _DryRun(Untimed):
 
     def move(self, chain: Sequence[Requested]) -> None:
         """Let moves pass: they are blended, and the command needs some cycles more to come to rest."""
-        joined = self._plans.chain(self._q, [each.command for each in chain], self._X_flange_tool)
+        commands = [each.command for each in chain]
+        joined = self._plans.chain(self._q, commands, self._X_flange_tool)
+        speeds = Speeds(self._plans, joined, commands, self._X_flange_tool)
         self._q = np.array(joined.parts[-1].plan.q[-1])
         cycles = np.bincount(joined.command, minlength=len(chain))  # one for each row that is sent, the first as well
         cycles[-1] += REST_CYCLES - 1 if len(joined.q) > 1 else 0
         start_us = self.time_us
-        for each, part, corner, spent in zip(
-            chain, joined.parts, [*joined.corners, None], cycles.tolist(), strict=True
-        ):
+        rows = zip(chain, joined.parts, [*joined.corners, None], cycles.tolist(), strict=True)
+        for number, (each, part, corner, spent) in enumerate(rows):
             begins = self.time_us
             self._spend(each.effect, spent)
             if self.time_us >= self._most_us:  # the executor ends it there, and a run ends within this move as well
@@ -237,6 +242,8 @@ class _DryRun(Untimed):
                     s=part.s,
                     X_flange_tool=self._X_flange_tool,
                     payload=self._payload,
+                    speeds=speeds,
+                    number=number,
                 )
             )
 

@@ -8,24 +8,21 @@
     RBL435   a joint move to a pose that turns a joint by more than half a turn, since the nearer angle is out of range
 
 The plan that is checked is the plan that runs: ``robolang check --motion`` reports these as findings, a run as warnings
-(docs/decisions/0030). A move that is too short to reach its SPEED is not reported.
+(docs/decisions/0030).
 """
-
-from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 
-from robolang.interpreter.effects import MoveTo
+from robolang.execution.planned_move import Found, PlanFinding, PlannedMove
+from robolang.execution.speed_findings import slowed
 from robolang.project.project import Project
 from runtime.core.frames import Array
-from runtime.core.rounding import beside, down, up
+from runtime.core.rounding import down, up
 from runtime.core.units import DEG, MM
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.corner import Corner
-from runtime.motion.commands import Command, MoveJoint
+from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
-from runtime.motion.ruling import Ruling, ruling
 from runtime.motion.taught_end import as_taught
 from runtime.robot.kinematics.kinematics import Kinematics
 
@@ -33,45 +30,17 @@ NOTICED = 0.1 * DEG
 """A tool or a joint that is turned less from where it should be keeps it, rad."""
 SHARP = 10.0 * DEG
 """Paths that turn by less at a corner are pieces of one curve: smaller blends do not slow the tool, rad."""
+_KEPT = 0.95
+"""A corner that reaches this share of its zone is as wide as programmed."""
 _NEAR = 1e-3
 """Share of a path over which its direction is taken."""
-SLOWED = 1.2
-"""A move that takes this many times as long as its SPEED alone needs is named. A bead is then a fifth thicker, which
-shows; the programs of ``programs/`` stay below 1.02, and moves slowed a little by a joint are no fault."""
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlannedMove:
-    """A move with its plan, and ``s`` (K,), the share of its path at its rows, alone or in a chain.
-
-    ``corner`` and ``after``: the corner at its end and the plan of the next move, None: it stops there.
-    """
-
-    effect: MoveTo
-    command: Command
-    plan: MovePlan
-    s: Array
-    corner: Corner | None = None
-    after: MovePlan | None = None
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class PlanFinding:
-    """A difference between a program and its motion; ``hint`` "": the remedy of the code."""
-
-    code: str
-    message: str
-    hint: str = ""
-
-
-Found = Iterator[PlanFinding]
 
 
 class PlanFindings:
     """Finds what the plans of one project's moves do otherwise than its program says."""
 
     def __init__(self, project: Project, kinematics: Kinematics) -> None:
-        self._spec, self._profile = project.cell.robot, project.profile
+        self._spec = project.cell.robot
         self._kinematics = kinematics
 
     def of(self, move: PlannedMove) -> Found:
@@ -80,7 +49,7 @@ class PlanFindings:
             yield from self.configuration(move)
             yield from self.long_turn(move)
             yield from self.wrist_change(move)
-            yield from self.slowed(move)
+            yield from slowed(move)
             yield from self.zone(move)
         yield from self.end(move)
 
@@ -146,40 +115,6 @@ class PlanFindings:
                 f"{taught} as taught: WRIST KEEP keeps the sign of J5",
             )
 
-    def slowed(self, move: PlannedMove) -> Found:
-        """Find a TIME that is not kept, and a SPEED that is not reached for another reason than a short path."""
-        effect, period_s, override = move.effect, self._profile.period_s, move.plan.override
-        takes_s = (len(move.s) - 1) * period_s
-        under = f" under OVERRIDE {effect.override_pct:g}" if effect.override_pct != 100.0 else ""
-        if effect.time_s is not None:
-            # under OVERRIDE 50 a TIME of 2 s is to take 4 s
-            programmed_s = effect.time_s / override
-            if not takes_s <= programmed_s + period_s:  # a move takes whole cycles
-                ruled = self._ruling(move)
-                takes, programmed = beside(takes_s, programmed_s)
-                yield PlanFinding(
-                    code="RBL429",
-                    message=f"the move takes {takes} s, not the {programmed} s of TIME "
-                    f"{effect.time_s:g}{under}: {ruled.why}",
-                    hint=f"Give TIME {up(takes_s * override):g} or more; or {ruled.remedy}.",
-                )
-        elif effect.speed_mm_s is not None and move.plan.path is not None:
-            ruled = self._ruling(move)
-            # compared by time: on most short paths the peak stays below SPEED, which is no fault (decision 0030)
-            if ruled.programmed_s > 0.0 and not takes_s <= max(ruled.programmed_s, period_s) * SLOWED:
-                yield PlanFinding(
-                    code="RBL429",
-                    message=f"the move reaches {ruled.peak / MM:.1f} mm/s at most, not SPEED "
-                    f"{effect.speed_mm_s:g}{under}, and takes {takes_s:.3f} s instead of "
-                    f"{ruled.programmed_s:.3f} s: {ruled.why}",
-                    hint=f"Give SPEED {down(ruled.keeps / MM):g}, which takes as long; or {ruled.remedy}."
-                    if ruled.keeps > 0.0
-                    else f"Lower SPEED, or {ruled.remedy}.",
-                )
-
-    def _ruling(self, move: PlannedMove) -> Ruling:
-        return ruling(move.plan, move.s, move.command, self._spec, self._profile)
-
     def zone(self, move: PlannedMove) -> Found:
         """Find a zone that leaves no room for the blends at both ends of a move, or in which the arm stops."""
         corner, after = move.corner, move.after
@@ -211,13 +146,21 @@ class PlanFindings:
             if plan.path is not None and not plan.path.length <= 0.0
         ]
         # for MOVEJ no length is known; a zone of half the path is not more than half, with the decimals of its points
-        if len(paths) == 2 and not _bend(before, after) < SHARP and not corner.radius <= 0.505 * min(paths)[0]:
+        kept = corner.reach >= _KEPT * corner.radius
+        if (
+            len(paths) == 2
+            and not kept
+            and not _bend(before, after) < SHARP
+            and not corner.radius <= 0.505 * min(paths)[0]
+        ):
             short, which = min(paths)
             yield PlanFinding(
                 code="RBL414",
                 message=f"{_zone(corner)} is more than half of the path {which} this corner, "
                 f"{short / MM:.1f} mm: the blend begins and ends within "
                 f"{corner.reach / MM:.1f} mm",
+                hint=f"Make the path {which} this corner {up(2.0 * corner.radius / MM):g} mm or longer; or write ZONE "
+                f"{down(corner.reach / MM):g}, which is kept.",
             )
 
 

@@ -21,7 +21,8 @@ from robolang.core.bounds import ELBOW, RANGE_MARGIN, SHOULDER, WRIST, Bounds
 from robolang.core.diagnostics import Diagnostic, Severity
 from robolang.core.source import Span
 from robolang.execution.dry_run import Rehearsal, RehearsedMove
-from robolang.execution.plan_findings import PlanFindings, PlannedMove
+from robolang.execution.plan_findings import PlanFindings
+from robolang.execution.planned_move import PlannedMove
 from robolang.planning.line_times import range_margin
 from robolang.planning.part_findings import CellTouches
 from robolang.planning.path_coverage import Detour
@@ -149,6 +150,8 @@ class _Moves:
             command=move.command,
             plan=move.plan,
             s=move.s,
+            speeds=move.speeds,
+            number=move.number,
             corner=move.corner,
             after=None if move.corner is None or after is None else after.plan,
         )

@@ -23,6 +23,7 @@ from runtime.motion.interpolator import Interpolator
 from runtime.motion.motion_planner import ChainPlan, MotionPlanner, tracked_row
 from runtime.motion.seam import SeamMove, SeamTracker
 from runtime.motion.speed_cap import SpeedCap
+from runtime.motion.speeds import Speeds
 from runtime.motion.stop import pause_course, resume_course, stopping_rows
 from runtime.robot.model.spec import RobotSpec
 
@@ -148,6 +149,10 @@ class RequestQueue(Stateful):
         if isinstance(command, MoveLinear) and self.tracker is not None:
             command = replace(command, tracked=True)
         return self.planner.plan(q_start, command, self.X_flange_tool, self.override, self.speed_cap)
+
+    def speeds(self, chain: ChainPlan, commands: Sequence[Command]) -> Speeds:
+        """Return how fast the moves of a chain are that has been planned now, judged when it is read."""
+        return Speeds(self.planner, chain, commands, self.X_flange_tool, self.override, self.speed_cap)
 
     def seam(self, tracker: SeamTracker | None) -> None:
         """Let the moves that follow go under a tracker; None ends that."""

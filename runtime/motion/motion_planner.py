@@ -143,6 +143,16 @@ class MotionPlanner:
         self._pace = Pace.of(spec, profile)
         self._limits = _limits(spec, profile)
 
+    @property
+    def spec(self) -> RobotSpec:
+        """The robot."""
+        return self._spec
+
+    @property
+    def limits(self) -> ChainLimits:
+        """What its chains keep to."""
+        return self._limits
+
     def plan(
         self,
         q_start: Array,

@@ -74,6 +74,10 @@ def test_a_zone_without_room(tmp_path):
     assert numbers(message)[:2] == [30, 40.0]
     assert "mm" in fields(message)
     assert found(tmp_path, text.replace("ZONE 30", "ZONE 20"), "RBL414") == []
+    longer = text.replace("100), ZONE 30", "120), ZONE 30").replace(
+        "MOVE P1 + (100, 0, 100)", "MOVE P1 + (100, 0, 120)"
+    )
+    assert found(tmp_path, longer, "RBL414") == []
 
 
 def test_a_path_near_a_straight_wrist(tmp_path):

@@ -1,0 +1,66 @@
+"""A move with its plan, as what compares plan and program takes it, and what it finds."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from robolang.execution.target import Requested
+from robolang.interpreter.effects import MoveTo
+from runtime.core.frames import Array
+from runtime.motion.cartesian_planner import MovePlan
+from runtime.motion.chain.corner import Corner
+from runtime.motion.commands import Command
+from runtime.motion.motion_planner import ChainPlan
+from runtime.motion.reached import Reached
+from runtime.motion.speeds import Speeds
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedMove:
+    """A move with its plan, and ``s`` (K,), the share of its path at its rows, alone or in a chain.
+
+    ``speeds`` are those of its chain, in which it is move ``number``. ``corner`` and ``after``: the corner at its end
+    and the plan of the next move, None: it stops there.
+    """
+
+    effect: MoveTo
+    command: Command
+    plan: MovePlan
+    s: Array
+    speeds: Speeds
+    number: int
+    corner: Corner | None = None
+    after: MovePlan | None = None
+
+    @property
+    def reached(self) -> Reached:
+        """What became of its speed."""
+        return self.speeds.moves[self.number]
+
+
+def planned_moves(requested: Sequence[Requested], chain: ChainPlan, speeds: Speeds) -> Iterator[PlannedMove]:
+    """Yield the moves of a chain that has been planned, with its speeds."""
+    nexts = [*(part.plan for part in chain.parts[1:]), None]
+    rows = zip(requested, chain.parts, (*chain.corners, None), nexts, strict=True)
+    for number, (each, own, corner, after) in enumerate(rows):
+        yield PlannedMove(
+            effect=each.effect,
+            command=each.command,
+            plan=own.plan,
+            s=own.s,
+            speeds=speeds,
+            number=number,
+            corner=corner,
+            after=after,
+        )
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlanFinding:
+    """A difference between a program and its motion; ``hint`` "": the remedy of the code."""
+
+    code: str
+    message: str
+    hint: str = ""
+
+
+Found = Iterator[PlanFinding]

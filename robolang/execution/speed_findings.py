@@ -1,0 +1,72 @@
+"""Where a TIME or a SPEED of a program is not kept, and what would help: RBL429.
+
+A TIME counts as kept within one cycle. A SPEED is compared by time, with what it and the acceleration of the path let
+expect (``MoveTimes.expected_s``): a move that is too short to reach it is no fault (docs/decisions/0030). Of a row of
+moves between two stops the one that loses most time is named, with the number of the others. Called by
+``PlanFindings``.
+"""
+
+from robolang.execution.planned_move import Found, PlanFinding, PlannedMove
+from runtime.core.rounding import beside, down, up
+from runtime.core.units import MM
+from runtime.motion.reached import Reached, Why
+from runtime.motion.speeds import REACHED
+
+CODE = "RBL429"
+
+
+def slowed(move: PlannedMove) -> Found:
+    """Find a TIME that is not kept, or a SPEED whose move takes far longer than this speed lets expect."""
+    if move.effect.time_s is not None:
+        if move.speeds.late_for_time(move.number):
+            yield _of_time(move, move.effect.time_s, move.reached)
+    elif move.effect.speed_mm_s is not None and move.number in move.speeds.slowed:
+        yield _of_speed(move, move.effect.speed_mm_s, move.reached)
+
+
+def _under(move: PlannedMove) -> str:
+    override = move.effect.override_pct
+    return f" under OVERRIDE {override:g}" if override != 100.0 else ""
+
+
+def _of_time(move: PlannedMove, time_s: float, found: Reached) -> PlanFinding:
+    # under OVERRIDE 50 a TIME of 2 s is to take 4 s
+    override = move.plan.override
+    seconds = round(found.seconds, 3)
+    takes, programmed = beside(seconds, time_s / override)
+    why = _why(found)
+    return PlanFinding(
+        code=CODE,
+        message=f"the move takes {takes} s, not the {programmed} s of TIME {time_s:g}{_under(move)}: {why.text}",
+        hint=f"Give TIME {up(seconds * override):g} or more; or {why.remedy}.",
+    )
+
+
+def _of_speed(move: PlannedMove, speed: float, found: Reached) -> PlanFinding:
+    why, row = _why(found), move.speeds.slowed[move.number]
+    moves = [move.speeds.moves[k] for k in row]
+    takes, expected = sum(each.seconds for each in moves), sum(each.expected_s for each in moves)
+    reaches = f"the move reaches {found.reached / MM:.1f} mm/s at most, not"
+    if found.programmed is None or found.reached >= REACHED * found.programmed:
+        reaches = "the move is slowed below"
+    others = f"with {len(row) - 1} more up to the next stop " if len(row) > 1 else ""
+    takes_s = f"{others}takes {takes:.3f} s instead of {expected:.3f} s"
+    return PlanFinding(
+        code=CODE,
+        message=f"{reaches} SPEED {speed:g}{_under(move)}, and {takes_s}: {why.text}",
+        hint=f"{_lower(move, why, len(row) == 1)}; or {why.remedy}.",
+    )
+
+
+def _lower(move: PlannedMove, why: Why, alone: bool) -> str:
+    """Return which SPEED to give: one that takes as long, where the limit does not hold at that speed as well."""
+    if alone and why.kind in ("turning", "radius"):
+        keeps = move.speeds.times.slower(move.number)
+        if keeps > 0.0:
+            return f"Give SPEED {down(keeps / MM):g}, which takes as long"
+    return "Lower SPEED"
+
+
+def _why(found: Reached) -> Why:
+    assert found.why is not None  # a move that is late has a reason
+    return found.why
