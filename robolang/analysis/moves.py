@@ -1,8 +1,8 @@
 """Statements that move the arm, and their options."""
 
-from robolang.syntax.ast import Approach, Depart, Move, MoveC, MoveJ, Moving
+from robolang.syntax.ast import Approach, Depart, Move, MoveC, MoveJ, Moving, Spline
 
-MOVES = (Move, MoveJ, MoveC, Approach, Depart)
+MOVES = (Move, MoveJ, MoveC, Spline, Approach, Depart)
 
 
 def has_option(node: Moving, *kinds: type) -> bool:

@@ -5,6 +5,7 @@ here where a rule concerns more than one operand. The interpreter judges by the 
 may carry is judged by ``runtime.robot.model.load_rules``, as in a run.
 """
 
+import itertools
 import math
 from collections.abc import Callable, Collection, Iterator
 from typing import Any
@@ -41,6 +42,7 @@ from robolang.syntax.ast import (
     Node,
     Option,
     Speed,
+    Spline,
     Statement,
     Time,
     Unparsed,
@@ -50,7 +52,7 @@ from robolang.syntax.ast import (
 )
 from robolang.syntax.declaration import Declaration, Operand, Role
 from robolang.syntax.statements import declaration
-from robolang.syntax.unparse import describe
+from robolang.syntax.unparse import describe, print_expression
 from robolang.values.kinds import Kind
 from runtime.core import limits
 from runtime.core.faults import Fault
@@ -99,7 +101,7 @@ class StatementCheck:
         for operand in declared.operands:
             value = getattr(node, operand.name)
             if operand.role is Role.PLACE:
-                yield from self._place(value)
+                yield from self._each_place(value)
             elif operand.of and isinstance(value, Name):
                 yield from self._of_cell(value, operand)
             elif operand.role is Role.VECTOR and value is not None:
@@ -137,6 +139,11 @@ class StatementCheck:
         known: Collection[str] | None = getattr(self._symbols, f"{operand.of}s")
         yield from of_cell(name, known, operand.of, self._symbols, operand.code)
 
+    def _each_place(self, value: Expression | tuple[Expression, ...]) -> Iterator[Diagnostic]:
+        # the points of SPLINE are a list
+        for place in value if isinstance(value, tuple) else (value,):
+            yield from self._place(place)
+
     def _place(self, node: Expression) -> Iterator[Diagnostic]:
         points = self._symbols.points
         if isinstance(node, Name) and not self._defined.has_value(node.key):
@@ -165,6 +172,22 @@ class StatementCheck:
             message = "TIME fixes how long the move takes, so SPEED cannot be given too"
             related = (Related(span=seen[Time].span, message="TIME is given here"),)
             yield Diagnostic(code="RBL119", message=message, span=seen[Speed].span, related=related)
+
+    def _spline(self, node: Spline) -> Iterator[Diagnostic]:
+        yield from self._moving(node)
+        if len(node.points) == 1:
+            message = "SPLINE takes two points or more: to one point there is no curve"
+            hint = f"write MOVE {print_expression(node.points[0])}"
+            yield Diagnostic(code="RBL220", message=message, span=node.points[0].span, hint=hint)
+        for before, point in itertools.pairwise(node.points):
+            if print_expression(point).upper() == print_expression(before).upper():
+                yield Diagnostic(
+                    code="RBL236",
+                    severity=Severity.WARNING,
+                    message=f"{print_expression(point)} stands twice in a row: the curve passes it once",
+                    span=point.span,
+                    hint="remove one of the two, or correct its name",
+                )
 
     def _within(self, node: Expression, limit: Limit) -> Iterator[Diagnostic]:
         """Report a value that is no number, or out of a range."""
@@ -302,6 +325,7 @@ _RULES: dict[type, Callable[..., Iterator[Diagnostic]]] = {
     Move: _Check._moving,
     MoveJ: _Check._moving,
     MoveC: _Check._moving,
+    Spline: _Check._spline,
     Approach: _Check._moving,
     Depart: _Check._moving,
     Load: _Check._load,
@@ -360,7 +384,8 @@ def _computed(value: Any, operand: Operand) -> tuple[Expression, ...]:
         case Role.VECTOR:
             found = value.items
         case Role.PLACE | Role.OF_CELL:
-            found = () if isinstance(value, Name) else (value,)
+            places = value if operand.separator else (value,)
+            found = tuple(place for place in places if not isinstance(place, Name))
         case Role.ASSIGNED:
             found = value.arguments if isinstance(value, Call) else ()
         case _:

@@ -139,7 +139,8 @@ register(
         code="RBL220",
         name="value-count",
         meaning="Parentheses hold the wrong number of values.",
-        remedy="Give a position three values (x, y, z); an offset with rotation and an inertia have six.",
+        remedy="Give a position three values (x, y, z), an offset with rotation and an inertia six, SPLINE two or more "
+        "points.",
     ),
     Code(
         code="RBL224",
@@ -158,6 +159,12 @@ register(
         name="rounded-comparison",
         meaning="A number that may be rounded is compared with = or <>.",
         remedy="Compare the difference with a small number, as in ABS(x - 0.3) < 1E-6.",
+    ),
+    Code(
+        code="RBL236",
+        name="point-twice",
+        meaning="A SPLINE has the same point twice in a row.",
+        remedy="Remove one of the two.",
     ),
     Code(
         code="RBL414",
@@ -266,6 +273,21 @@ register(
         "range.",
         remedy="Turn the joint back in an earlier move, where there is space for it; teach the point as joint angles "
         "if this turn is intended.",
+        found=Stage.MOTION,
+    ),
+    Code(
+        code="RBL436",
+        name="spline-swings",
+        meaning="The curve of a SPLINE leaves the straight line between two of its points by more than half of their "
+        "distance, or of that of the points beside them.",
+        remedy="Teach a point between the two, or points at distances that are more alike.",
+        found=Stage.MOTION,
+    ),
+    Code(
+        code="RBL437",
+        name="spline-doubles-back",
+        meaning="The curve of a SPLINE turns back at a point, so that the tool nearly stops there.",
+        remedy="Teach points that lead round the turn, or write two moves.",
         found=Stage.MOTION,
     ),
     Code(

@@ -14,7 +14,7 @@ A place (``robolang.values.poses``) becomes a pose of the tool point in the worl
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import cast
+from typing import Any
 
 import numpy as np
 
@@ -27,7 +27,7 @@ from runtime.core.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_po
 from runtime.core.limits import DWELL
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
-from runtime.motion.commands import Command, Component, MoveArc, MoveJoint, MoveLinear, Wrist
+from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear, MoveSpline
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import beyond_range
 from runtime.robot.model.payload import Payload, declared
@@ -76,54 +76,24 @@ def payload(effect: SetPayload, cell: CellSpec) -> Payload:
 def move(effect: MoveTo, around: Surroundings) -> Command:
     """Return the motion command of a move; ``Fault`` RBL30x or RBL40x."""
     goal = _goal(effect.target, around)
-    override = effect.override_pct * PERCENT
-    acceleration = 1.0 if effect.accel_pct is None else effect.accel_pct * PERCENT
-    duration = effect.time_s
-    zone = effect.zone_mm * MM
+    options: dict[str, Any] = {
+        "X_world_tool": goal.X,
+        "q_end": goal.q_end,
+        "configuration": goal.configuration,
+        "turns": goal.turns,
+        "acceleration": 1.0 if effect.accel_pct is None else effect.accel_pct * PERCENT,
+        "duration": effect.time_s,
+        "zone": effect.zone_mm * MM,
+        "override": effect.override_pct * PERCENT,
+    }
     if effect.path == "joint":
-        share = (100.0 if effect.speed_pct is None else effect.speed_pct) * PERCENT
-        return MoveJoint(
-            q_end=goal.q_end,
-            X_world_tool=goal.X,
-            configuration=goal.configuration,
-            turns=goal.turns,
-            speed=share,
-            acceleration=acceleration,
-            duration=duration,
-            zone=zone,
-            override=override,
-        )
-    speed = None if effect.speed_mm_s is None else effect.speed_mm_s * MM
-    # the parser admits no other words, and effects have them as plain texts
-    wrist, held = cast("Wrist | None", effect.wrist), cast("tuple[Component, ...]", effect.held)
+        return MoveJoint(speed=(100.0 if effect.speed_pct is None else effect.speed_pct) * PERCENT, **options)
+    options["speed"] = None if effect.speed_mm_s is None else effect.speed_mm_s * MM
+    options["wrist"], options["held"] = effect.wrist, effect.held
+    through = tuple(_goal(place, around).X for place in effect.via)
     if effect.path == "arc":
-        assert effect.via is not None
-        return MoveArc(
-            X_via=_goal(effect.via, around).X,
-            X_world_tool=goal.X,
-            q_end=goal.q_end,
-            configuration=goal.configuration,
-            turns=goal.turns,
-            wrist=wrist,
-            speed=speed,
-            acceleration=acceleration,
-            duration=duration,
-            zone=zone,
-            override=override,
-        )
-    return MoveLinear(
-        X_world_tool=goal.X,
-        q_end=goal.q_end,
-        configuration=goal.configuration,
-        turns=goal.turns,
-        wrist=wrist,
-        held=held,
-        speed=speed,
-        acceleration=acceleration,
-        duration=duration,
-        zone=zone,
-        override=override,
-    )
+        return MoveArc(X_via=through[0], **options)
+    return MoveSpline(X_through=through, **options) if effect.path == "spline" else MoveLinear(**options)
 
 
 def joint_move(place: Place, around: Surroundings) -> MoveJoint:

@@ -7,6 +7,8 @@
     RBL434   a joint move to a pose that changes the arm configuration
     RBL435   a joint move to a pose that turns a joint by more than half a turn, since the nearer angle is out of range
 
+and those of splines (``spline_findings``).
+
 The plan that is checked is the plan that runs: ``robolang check --motion`` reports these as findings, a run as warnings
 (docs/decisions/0030).
 """
@@ -15,7 +17,10 @@ import numpy as np
 
 from robolang.execution.planned_move import Found, PlanFinding, PlannedMove
 from robolang.execution.speed_findings import slowed
+from robolang.execution.spline_findings import spline_findings
 from robolang.project.project import Project
+from robolang.syntax.ast import Spline
+from robolang.syntax.unparse import print_expression
 from runtime.core.frames import Array
 from runtime.core.rounding import down, up
 from runtime.core.units import DEG, MM
@@ -23,6 +28,7 @@ from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.corner import Corner
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
+from runtime.motion.spline_path import SplinePath
 from runtime.motion.taught_end import as_taught
 from runtime.robot.kinematics.kinematics import Kinematics
 
@@ -51,6 +57,7 @@ class PlanFindings:
             yield from self.wrist_change(move)
             yield from slowed(move)
             yield from self.zone(move)
+            yield from _of_spline(move)
         yield from self.end(move)
 
     def configuration(self, move: PlannedMove) -> Found:
@@ -162,6 +169,14 @@ class PlanFindings:
                 hint=f"Make the path {which} this corner {up(2.0 * corner.radius / MM):g} mm or longer; or write ZONE "
                 f"{down(corner.reach / MM):g}, which is kept.",
             )
+
+
+def _of_spline(move: PlannedMove) -> Found:
+    """Find where the curve of a spline is not what its points look like."""
+    path, node = move.plan.path, move.effect.node
+    # what is left of a move that was interrupted has other points than its statement
+    if isinstance(path, SplinePath) and isinstance(node, Spline) and len(node.points) == len(move.effect.via) + 1:
+        yield from spline_findings(path, ["the start", *map(print_expression, node.points)])
 
 
 def _bend(before: MovePlan, after: MovePlan) -> float:

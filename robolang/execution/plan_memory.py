@@ -63,6 +63,12 @@ class PlanMemory(MotionPlanner):
 
 
 def _key(command: Command) -> tuple[object, ...]:
-    # arrays cannot be hashed; by their bytes, since a plan is that of these very bits and of no near ones
     values = (getattr(command, field.name) for field in fields(command))
-    return (type(command), *(value.tobytes() if isinstance(value, np.ndarray) else value for value in values))
+    return (type(command), *map(_hashable, values))
+
+
+def _hashable(value: object) -> object:
+    # arrays cannot be hashed; by their bytes, since a plan is that of these very bits and of no near ones
+    if isinstance(value, np.ndarray):
+        return value.tobytes()
+    return tuple(map(_hashable, value)) if isinstance(value, tuple) else value

@@ -15,10 +15,11 @@ from runtime.core.frames import Array
 from runtime.core.linear import matmul
 from runtime.core.units import MM
 from runtime.motion.path import LinePath, Path
+from runtime.motion.spline_path import SplinePath
 
 _SAMPLES = 1001
 _SHORT = 1.0 * MM
-"""An arc shorter than this is a line."""
+"""An arc or a spline shorter than this is a line."""
 _TOGETHER = 1e-9
 """Joints that turn together are off the straight line in joint space by less, rad."""
 _ON_LINE, _ON_TURN = 1e-5, 1e-4
@@ -39,7 +40,7 @@ def row_of(effect: Effect, tick: int, points: PointStore) -> StatementRun:
 def _named_by(effect: Effect, points: PointStore) -> tuple[Point, ...]:
     if not isinstance(effect, MoveTo):
         return ()
-    names = (place.point for place in (effect.target, effect.via) if place is not None and place.point)
+    names = dict.fromkeys(place.point for place in (effect.target, *effect.via) if place.point)
     return tuple(point for point in map(points.get, names) if point is not None)
 
 
@@ -69,7 +70,8 @@ def rest_of(run: StatementRun, q: Array, around: Surroundings) -> Effect | None:
     """Return the move from joints q (n,) rad on the path of a row to its end; other effects as they are.
 
     A DEPART is measured from where it began, and the point via which an arc leads may have been passed: they become a
-    move to a pose in the world, and an arc through the middle of what is left.
+    move to a pose in the world, and an arc through the middle of what is left. So may points of a spline: what is left
+    goes through places of the curve.
     """
     effect, path = run.effect, run.path
     if not isinstance(effect, MoveTo) or path is None:
@@ -77,7 +79,7 @@ def rest_of(run: StatementRun, q: Array, around: Surroundings) -> Effect | None:
     if effect.target.last:
         # in the world, since a pose has no other frame of its own
         return replace(effect, target=_place(path, 1.0))
-    return _arc_between(effect, path, _parameter(path, _tool(q, around)), 1.0)
+    return _between(effect, path, _parameter(path, _tool(q, around)), 1.0)
 
 
 def note_rest(run: StatementRun, q: Array, around: Surroundings) -> None:
@@ -85,21 +87,24 @@ def note_rest(run: StatementRun, q: Array, around: Surroundings) -> None:
     there, but for its target."""
     run.rest = tuple(float(angle) for angle in q / around.cell.robot.units)
     if isinstance(run.effect, MoveTo) and run.path is not None:
-        run.effect = _arc_between(run.effect, run.path, 0.0, _parameter(run.path, _tool(q, around)))
+        run.effect = _between(run.effect, run.path, 0.0, _parameter(run.path, _tool(q, around)))
 
 
 def _tool(q: Array, around: Surroundings) -> Array:
     return np.asarray(matmul(around.kinematics.forward(q), around.X_flange_tool))[:3, 3]
 
 
-def _arc_between(effect: MoveTo, path: Path, low: float, high: float) -> MoveTo:
-    """Return the part of an arc between two path parameters; of another path the whole."""
-    if effect.via is None:
+def _between(effect: MoveTo, path: Path, low: float, high: float) -> MoveTo:
+    """Return the part of an arc or a spline between two path parameters; of another path the whole."""
+    if not effect.via:
         return effect
     # three points so near to one another may lie in line, which is no arc
     if (high - low) * path.length < _SHORT:
-        return replace(effect, path="line", via=None)
-    return replace(effect, via=_place(path, (low + high) / 2.0))
+        return replace(effect, path="line", via=())
+    if not isinstance(path, SplinePath):
+        return replace(effect, via=(_place(path, (low + high) / 2.0),))
+    inner = path.points_within(low, high)
+    return replace(effect, via=tuple(_place(path, s) for s in inner))
 
 
 def _parameter(path: Path, p: Array) -> float:

@@ -34,6 +34,7 @@ from robolang.syntax.ast import (
     Seam,
     Setting,
     Speed,
+    Spline,
     Time,
     Vector,
     Wrist,
@@ -71,6 +72,8 @@ class Settings:
     wrist: Wrist | None = None
 
 
+_PATHS: dict[type, effects.PathKind] = {MoveJ: "joint", MoveC: "arc", Spline: "spline"}
+"""The paths of moves that are not straight."""
 _OPTIONS: dict[type, tuple[str, limits.Limit]] = {
     Speed: ("speed_mm_s", limits.SPEED),
     Accel: ("accel_pct", limits.ACCEL),
@@ -96,18 +99,26 @@ class Actions:
 
     def _move(self, line: Line, node: Moving) -> Effect:
         values, wrist = self._options(node)
+        *via, target = self._places(node)
         return effects.MoveTo(
             **origin(line, node),
-            path="joint" if isinstance(node, MoveJ) else "arc" if isinstance(node, MoveC) else "line",
-            target=self._target(node),
-            via=self._values.place(node.via) if isinstance(node, MoveC) else None,
+            path=_PATHS.get(type(node), "line"),
+            target=target,
+            via=tuple(via),
             wrist=None if wrist is None else _mode(wrist),
             held=() if wrist is None else _held(wrist),
             override_pct=self.settings.override_pct,
             **values,
         )
 
-    def _target(self, node: Moving) -> Place:
+    def _places(self, node: Moving) -> list[Place]:
+        """Return the places over which a move leads, and the one where it ends."""
+        if isinstance(node, Spline):
+            return [self._values.place(point) for point in node.points]
+        target = self._target(node)
+        return [self._values.place(node.via), target] if isinstance(node, MoveC) else [target]
+
+    def _target(self, node: Move | MoveJ | MoveC | Approach | Depart) -> Place:
         if isinstance(node, Depart):
             # where the motion before ends is not known yet: moves may still be in progress when this is evaluated
             return Place(last=True).shifted(_back(self._distance(node.distance)))
@@ -230,6 +241,7 @@ _EFFECT: dict[type, Callable[..., Effect | None]] = {
     Move: Actions._move,
     MoveJ: Actions._move,
     MoveC: Actions._move,
+    Spline: Actions._move,
     Approach: Actions._move,
     Depart: Actions._move,
     Load: Actions._load,

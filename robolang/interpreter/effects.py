@@ -15,7 +15,7 @@ from robolang.syntax.tree import Node
 from robolang.values.poses import Frame, Place
 from runtime.core.program_line import ProgramLine
 
-PathKind = Literal["line", "joint", "arc"]
+PathKind = Literal["line", "joint", "arc", "spline"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -57,7 +57,8 @@ class SetPayload(OfStatement):
 class MoveTo(OfStatement):
     """Move the tool to a place; None where the move leaves a value open.
 
-    ``path``: straight, with all joints together, or on an arc over ``via``. ``speed_mm_s`` of the tool point and
+    ``path``: straight, with all joints together, on an arc over the place ``via``, or on a spline through the places
+    ``via``. ``speed_mm_s`` of the tool point and
     ``speed_pct`` of the joints (``path`` joint), ``accel_pct``, ``time_s`` for all of the move, ``override_pct`` of
     every speed. ``zone_mm``: radius within which it blends into the next one, 0: it stops. ``wrist`` and ``held`` are
     the mode and the components of ``SetWrist`` that hold for this move; None and () when the program has given neither.
@@ -65,7 +66,7 @@ class MoveTo(OfStatement):
 
     path: PathKind = "line"
     target: Place
-    via: Place | None = None
+    via: tuple[Place, ...] = ()
     speed_mm_s: float | None = None
     speed_pct: float | None = None
     accel_pct: float | None = None

@@ -22,7 +22,7 @@ from robolang.syntax.tokens import Token, span_of
 Parsed = tuple[ast.Name | None, ast.Statement | None, ast.Comment | None]
 """Label, statement and comment of a line."""
 
-_Head = tuple[Token, tuple[Expression, ...]]
+_Head = tuple[Token, tuple[Expression, ...], Expression | Token]
 
 
 def _over(first: Token | ast.Node, last: Token | ast.Node) -> Span:
@@ -99,19 +99,22 @@ class _Builder:
 
     # --- motion ------------------------------------------------------------------------------------------------------
 
-    def head(self, word: Token, *values: Expression) -> _Head:
-        return word, values
+    def head(self, word: Token, *values: Expression | Token) -> _Head:
+        # the parentheses of SPLINE are no operands; the last one ends the statement
+        return word, tuple(value for value in values if isinstance(value, ast.Node)), values[-1]
 
     def moving(self, head: _Head, *parts: ast.Option | list[Token] | Token) -> ast.Moving:
-        word, values = head
+        word, values, last = head
         options = _options(parts)
-        span = _over(word, options[-1] if options else values[-1])
+        span = _over(word, options[-1] if options else last)
         if word.type == "MOVE":
             return ast.Move(target=values[0], options=options, span=span)
         if word.type == "MOVEJ":
             return ast.MoveJ(target=values[0], options=options, span=span)
         if word.type == "MOVEC":
             return ast.MoveC(via=values[0], target=values[1], options=options, span=span)
+        if word.type == "SPLINE":
+            return ast.Spline(points=values, options=options, span=span)
         if word.type == "APPROACH":
             return ast.Approach(target=values[0], distance=values[1], options=options, span=span)
         return ast.Depart(distance=values[0], options=options, span=span)

@@ -132,6 +132,18 @@ def _label_colon(found: Unexpected) -> str | None:
     return f"a label has no colon: {quote(found.head)}" if is_label else None
 
 
+def _points(found: Unexpected) -> str | None:
+    """Return how a SPLINE is written: its points in parentheses, which KRL does not have, its options after them."""
+    if found.instruction != "SPLINE" or found.kind == "EQ":
+        return None
+    if found.head.strip().upper() == "SPLINE":
+        return "the points stand in parentheses, as in SPLINE (P1, P2, P3), SPEED 200"
+    among = found.takes_value and _open(found.before) and found.word in _OPTIONS
+    return (
+        f"write ) before {found.word}: options follow the points, as in SPLINE (P1, P2), SPEED 200" if among else None
+    )
+
+
 def _open(before: str) -> int:
     """Return how many parentheses are open at the end of a text."""
     # a parenthesis in a text opens nothing
@@ -179,7 +191,7 @@ def _bracket(found: Unexpected) -> str | None:
     return other_languages.assigned(word, element=True)
 
 
-_SLIPS: tuple[_Question, ...] = (_unit, _single_quotes, _label_colon, _decimal_comma, _parenthesis, _bracket)
+_SLIPS: tuple[_Question, ...] = (_points, _unit, _single_quotes, _label_colon, _decimal_comma, _parenthesis, _bracket)
 
 
 # --- words and signs of other languages -------------------------------------------------------------------------------

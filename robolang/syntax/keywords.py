@@ -28,7 +28,7 @@ KEYWORDS = INSTRUCTIONS | frozenset(INNER_WORDS)
 FUNCTIONS = frozenset(name for name, function in functions.FUNCTIONS.items() if function.parameters)
 VALUES = frozenset(functions.FUNCTIONS) - FUNCTIONS
 """Functions without parameters: words that are a value by themselves."""
-NEW = frozenset({"XOR"})
+NEW = frozenset({"SPLINE", "XOR"})
 """Keywords that came after edition 1: they are read as keywords where the grammar has one, and are names elsewhere, so
 that older points, cells and programs keep their names (docs/decisions/0029)."""
 RESERVED = (KEYWORDS - NEW) | FUNCTIONS | VALUES | {"REM", "NAN", "INF"}

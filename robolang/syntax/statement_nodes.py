@@ -86,6 +86,19 @@ class MoveC(Node):
         self.span = span
 
 
+class Spline(Node):
+    """``SPLINE (point, point [, point])``: moves the tool point on a smooth curve through points."""
+
+    __slots__ = ("points", "options")
+
+    def __init__(
+        self, *, points: tuple[Expression, ...], options: tuple[Option, ...] = (), span: Span = NOWHERE
+    ) -> None:
+        self.points: Final = points
+        self.options: Final = options
+        self.span = span
+
+
 class Approach(Node):
     """``APPROACH point, mm``: moves straight to a distance before the target, along the tool's approach axis."""
 
@@ -402,13 +415,14 @@ class OnError(Node):
         self.span = span
 
 
-Moving: TypeAlias = Move | MoveJ | MoveC | Approach | Depart
+Moving: TypeAlias = Move | MoveJ | MoveC | Spline | Approach | Depart
 
 
 Statement: TypeAlias = (
     Move
     | MoveJ
     | MoveC
+    | Spline
     | Approach
     | Depart
     | Load

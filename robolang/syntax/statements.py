@@ -37,6 +37,10 @@ def _place(name: str) -> Operand:
     return Operand(name, "point", Role.PLACE, kind=Kind.POSE)
 
 
+def _places(name: str) -> Operand:
+    return Operand(name, "point, point [, point]", Role.PLACE, kind=Kind.POSE, separator=", ")
+
+
 def _option(node: str, form: str, help: str, limit: Limit) -> Declaration:
     return Declaration(node, (form,), help, (_number("value", limit.unit, limit),))
 
@@ -111,6 +115,7 @@ _MOTION = (
     _move("Move", "MOVE {target}", "moves the tool point on a straight line", _place("target")),
     _move("MoveJ", "MOVEJ {target}", "moves all joints together", _place("target"), options=_OF_JOINTS),
     _move("MoveC", "MOVEC {via}, {target}", "moves the tool point on an arc over via", _place("via"), _place("target")),
+    _move("Spline", "SPLINE ({points})", "moves the tool point on a smooth curve through points", _places("points")),
     _move(
         "Approach",
         "APPROACH {target}, {distance}",
@@ -164,7 +169,7 @@ _MOTION = (
     ),
 )
 _SETTINGS = (
-    _setting("SPEED", "sets the speed of straight moves and arcs, mm/s", limits.SPEED),
+    _setting("SPEED", "sets the speed of straight moves, arcs and splines, mm/s", limits.SPEED),
     _setting("SPEEDJ", "sets the speed of MOVEJ, % of the joint limits", limits.SPEEDJ),
     _setting("ACCEL", "sets acceleration and jerk, %", limits.ACCEL),
     _setting("OVERRIDE", "scales every speed that follows, %", limits.OVERRIDE),

@@ -11,8 +11,11 @@ from robolang.core.diagnostics import Diagnostic
 from robolang.core.source import Span
 from robolang.syntax import foreign_calls, foreign_lines, other_languages
 from robolang.syntax.hints import ASSIGNMENT, ASSIGNS, hint_of, unit_hint
-from robolang.syntax.keywords import COMPONENTS6, KEYWORDS, code_point, instruction_hint, look_alike
+from robolang.syntax.keywords import COMPONENTS6, KEYWORDS, code_point, instruction_hint, look_alike, near
 from robolang.syntax.unexpected import END, Unexpected, expected, last_word, quote
+
+_LIKENESS = 0.8
+"""How alike a word and SPLINE are where that is meant, and not a call."""
 
 
 def explain(found: Unexpected) -> Diagnostic:
@@ -80,7 +83,8 @@ def _component(found: Unexpected) -> Diagnostic | None:
 def _call(found: Unexpected) -> Diagnostic | None:
     """Return RBL112 for a line as ``sleep(0.5)`` of other languages: up to its end it could be one of this language."""
     call = re.match(r"[A-Za-z]\w*(?=[ \t]*\()", found.before)
-    if call and not ASSIGNMENT.match(found.line) and other_languages.instruction(call[0]):
+    known = call and (other_languages.instruction(call[0]) or _misspelt(call[0]))
+    if call and known and not ASSIGNMENT.match(found.line):
         return _unknown_word(found, call[0], found.span.start - len(found.before))
     # pick(1, 2) of a subroutine: its name is the mistake, not the sign at which an element of an array ends
     sub = foreign_calls.unknown(found.line) if "(" in found.before else None
@@ -99,8 +103,14 @@ def _unknown(found: Unexpected) -> Diagnostic | None:
 def _unknown_word(found: Unexpected, word: str, start: int) -> Diagnostic:
     message = f"unknown instruction '{quote(word)}'"
     sub = foreign_calls.unknown(found.line)
-    hint = foreign_lines.advice(found.line) or (sub.advice if sub else instruction_hint(word))
+    hint = foreign_lines.advice(found.line) or _misspelt(word) or (sub.advice if sub else instruction_hint(word))
     return Diagnostic(code="RBL112", message=message, span=Span(start, start + len(word)), hint=hint)
+
+
+def _misspelt(word: str) -> str:
+    """Return what is meant by a word like SPLINE, whose parentheses look like those of a call, or ``""``."""
+    fits = word.upper() != "SPLINE" and near(word, ("SPLINE",), cutoff=_LIKENESS)
+    return "did you mean SPLINE?" if fits else ""
 
 
 def _unexpected(found: Unexpected) -> Diagnostic:

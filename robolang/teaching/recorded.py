@@ -139,14 +139,13 @@ class _Writer:
         if rest is not None:
             # neither the time nor the zone of the whole move is that of a part
             effect = replace(effect, target=Place(joints=rest), time_s=None, zone_mm=0.0)
-            if not run.ended and effect.path == "arc":
-                effect = replace(effect, path="line", via=None)
+            if not run.ended and effect.via:
+                effect = replace(effect, path="line", via=())
         # effects have names in capitals
         names = {point.name.upper(): self._name(point) for point in run.points}
         # neither is an option of a move, and both end no blend
         self._scale(effect.override_pct)
-        places = [place for place in (effect.via, effect.target) if place is not None]
-        frame = next((frame for place in places for frame in _frames(place)), self._frame)
+        frame = next((frame for place in (*effect.via, effect.target) for frame in _frames(place)), self._frame)
         if frame != self._frame:
             self._frame = frame
             self._add(f"FRAME {self._of_cell(frame, self._cell.frames, 'WORLD')}")
@@ -173,8 +172,9 @@ class _Writer:
         """Return a move without its options."""
         target = effect.target
         if effect.path == "arc":
-            assert effect.via is not None
-            return f"MOVEC {self._place(effect.via, names)}, {self._place(target, names)}"
+            return f"MOVEC {self._place(effect.via[0], names)}, {self._place(target, names)}"
+        if effect.path == "spline":
+            return f"SPLINE ({', '.join(self._place(place, names) for place in (*effect.via, target))})"
         # HERE in its place would end the motion before it, and with it a blend
         if target.last:
             return f"DEPART {number(-target.shifts[0].by[2])}"

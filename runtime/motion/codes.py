@@ -17,5 +17,6 @@ register(
         meaning="No curve passes two points of a SPLINE in a row: the tool would turn at one place, or make half a "
         "turn, which has two directions.",
         remedy="Turn the tool in a MOVE of its own, or teach a point between the two.",
+        found=Stage.MOTION,
     ),
 )

@@ -83,6 +83,7 @@ class Spline:
 
     def parameter(self, length: Array) -> Array:
         """Return u (N,) where lengths l (N,) are passed."""
+        # within one step l(u) is nearly straight, so Newton converges from the secant
         k = np.clip(np.searchsorted(self.lengths, length, side="right") - 1, 0, len(self.lengths) - 2)
         low, high = self.nodes[k], self.nodes[k + 1]
         rest = length - self.lengths[k]

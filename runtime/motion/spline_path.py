@@ -27,6 +27,8 @@ _SAME_PLACE = 1e-6
 """Points nearer to one another, m, are at one place."""
 _SAME_TURN = 1e-6
 """Orientations that differ by less, rad, are one."""
+_PARTS = 4
+"""Parts of the curve between two points, of which what is left of it is made."""
 _BETWEEN = 32
 """Places between two points at which a curve is measured."""
 _STILL = 1e-6
@@ -140,9 +142,20 @@ class SplinePath:
         u = self.curve.nodes[nearest]
         for _ in range(3):
             value, first, _ = (each[:, :3] for each in self.curve.at(u))
+            # Newton's step without the curvature: from the nearest node three of them reach rounding
             step = ((points - value) * first).sum(axis=1) / np.maximum((first**2).sum(axis=1), SLOW**2)
             u = np.clip(u + step, self.curve.knots[0], self.curve.knots[-1])
         return np.asarray(np.linalg.norm(points - self.curve.at(u)[0][:, :3], axis=1))
+
+    def points_within(self, low: float, high: float) -> list[float]:
+        """Return shares between two others, all of points and some between these, through which the curve is the same.
+
+        A spline through them differs from the curve by less than a hundredth of what it is from straight pieces.
+        """
+        ends = self.points_at
+        shares = (ends[:-1] + np.linspace(0.0, 1.0, _PARTS, endpoint=False)[:, None] * np.diff(ends)).T.ravel()
+        inner = shares[(shares > low) & (shares < high)].tolist()
+        return inner or [0.5 * (low + high)]
 
     def swings(self) -> tuple[Swing, ...]:
         """Return how far the curve is from the straight line between each two points, in order."""
@@ -171,6 +184,7 @@ class SplinePath:
 def _distinct(X: Sequence[Array]) -> tuple[list[Array], tuple[int, ...]]:
     """Return poses without those that are the one before them, and their numbers; ``Fault`` RBL417."""
     kept = [0]
+    # each is compared with the last one that is kept, so that many small steps do not add up to a gap
     for number in range(1, len(X)):
         if _moves(X[kept[-1]], X[number], f"from {_point(kept[-1])} to {_point(number)} of the spline"):
             kept.append(number)

@@ -10,7 +10,7 @@ import re
 from hypothesis import strategies as st
 
 from robolang.syntax import ast
-from robolang.syntax.keywords import FUNCTIONS, NEW, RESERVED, VALUES
+from robolang.syntax.keywords import FUNCTIONS, INSTRUCTIONS, NEW, RESERVED, VALUES
 
 
 def make(kind, **parts):
@@ -44,6 +44,7 @@ names = (
     .filter(lambda text: text.upper() not in RESERVED and text.upper() != "REM$")
     .map(lambda text: ast.Name(text=text))
 )
+assigned = names.filter(lambda name: name.key not in INSTRUCTIONS)
 parts = st.sampled_from(["X", "y", "Z", "rx", "RY", "RZ", "Q"]).map(lambda text: ast.Name(text=text))
 strings = st.text(st.characters(categories=["L", "N", "P", "S"], include_characters=' "') | st.just('"'), max_size=8)
 words = st.sampled_from(sorted(VALUES)).map(lambda word: ast.Call(name=ast.Name(text=word)))
@@ -129,6 +130,7 @@ def simple_statements(targets):
         ast.Move: make(ast.Move, target=expressions, **moved),
         ast.MoveJ: make(ast.MoveJ, target=expressions, **moved),
         ast.MoveC: make(ast.MoveC, via=expressions, target=expressions, **moved),
+        ast.Spline: make(ast.Spline, points=several(expressions), **moved),
         ast.Approach: make(ast.Approach, target=expressions, distance=expressions, **moved),
         ast.Depart: make(ast.Depart, distance=expressions, **moved),
         ast.Load: make(ast.Load, cog=vectors, mass=expressions, inertia=st.none() | vectors),
@@ -139,7 +141,7 @@ def simple_statements(targets):
         ast.Setting: make(ast.Setting, word=st.sampled_from(SETTINGS), value=expressions),
         ast.Assign: make(
             ast.Assign,
-            target=names | make(ast.Call, name=names, arguments=several(expressions, most=1)),
+            target=assigned | make(ast.Call, name=assigned, arguments=several(expressions, most=1)),
             value=expressions,
         ),
         ast.Dim: make(ast.Dim, name=names, size=expressions),

@@ -151,4 +151,12 @@ RULES = (
         good='10 X = 0.1 + 0.2\n20 IF ABS(X - 0.3) < 1E-6 THEN PRINT "equal"\n',
         line=2,
     ),
+    Rule(
+        code="RBL236",
+        severity=Severity.WARNING,
+        why="The curve passes the point once, and the second one changes nothing. Often another point was meant, and "
+        "the curve misses it.",
+        bad="10 SPLINE (P1, P2, P2, P3)\n",
+        good="10 SPLINE (P1, P2, P3)\n",
+    ),
 )

@@ -46,6 +46,13 @@ RULES = (
         good="10 MOVEC P5 + (50, 20, 0), P5 + (100, 0, 0)\n",
     ),
     Rule(
+        code="RBL417",
+        why="A curve has a direction at each point, and a tool that turns at one place has none. A half turn has two "
+        "directions, and the wrong one may take a joint out of its range.",
+        bad="10 SPLINE (P5 + (50, 0, 0), P5 * (0, 50, 0, 0, 0, 90), P5 * (0, 50, 0))\n",
+        good="10 SPLINE (P5 + (50, 0, 0), P5 * (0, 50, 0, 0, 0, 90))\n20 MOVE P5 * (0, 50, 0)\n",
+    ),
+    Rule(
         code="RBL419",
         severity=Severity.WARNING,
         why="The tool is where it was taught, but J4 and J6 are half a turn away from it. The next joint move starts "
@@ -146,5 +153,20 @@ RULES = (
         bad="10 MOVEJ JOINT(0, 60, -190, 0, 60, 250)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
         good="10 MOVEJ JOINT(0, 60, -190, 0, 60, 200)\n20 MOVEJ HERE * (0, 0, 0, 0, 0, 40)\n",
         line=2,
+    ),
+    Rule(
+        code="RBL436",
+        severity=Severity.WARNING,
+        why="Nothing but the points holds a spline. Where points near to one another follow a long piece, the curve is "
+        "still turning when it leaves them, and swings out.",
+        bad="10 SPLINE (P5 + (100, 0, 0), P5 + (100, 10, 0), P5 + (0, 10, 0))\n",
+        good="10 SPLINE (P5 + (80, 0, 0), P5 + (100, 20, 0), P5 + (80, 40, 0), P5 + (0, 40, 0))\n",
+    ),
+    Rule(
+        code="RBL437",
+        severity=Severity.WARNING,
+        why="A tool that reverses has to come to rest. A bead is thick there, and the programmed speed is not kept.",
+        bad="10 SPLINE (P5 + (100, 0, 0), P5 + (50, 0, 0))\n",
+        good="10 SPLINE (P5 + (60, 0, 0), P5 + (90, 25, 0), P5 + (60, 50, 0), P5 + (0, 50, 0))\n",
     ),
 )

@@ -30,6 +30,8 @@ from robolang.syntax.foreign.entry import (
 _JOINTS = "MOVEJ P1, SPEED 50"
 _LINE = "MOVE P1, SPEED 200"
 _ARC = "MOVEC P2, P3, SPEED 200"
+_SPLINE = "SPLINE (P2, P3, P4), SPEED 200"
+_ALL_POINTS = "one SPLINE has all points in parentheses, and begins where the arm is"
 _SHIFTED = "MOVE HERE + (0, 0, 50)"
 _LOAD = "LOAD (0, 0, 60), 1.5"
 _NUMBERED = "the cell file names its tools and frames: [tools.tool1], [frames.frame1]"
@@ -48,7 +50,8 @@ MOVES = (
     Entry("LIN SLIN", (KRL,), LINE, _LINE),
     Entry("LIN_REL SLIN_REL", (KRL,), "moves straight by an offset", _SHIFTED),
     Entry("CIRC SCIRC", (KRL,), ARC, _ARC),
-    Entry("SPL SPLINE", (KRL,), "moves on a spline", "MOVE P1, SPEED 200, ZONE 20", missing=True),
+    Entry("SPL", (KRL,), "is one point of a spline", _SPLINE, note=_ALL_POINTS),
+    Entry("ENDSPLINE", (KRL,), "ends the points of a spline", note="the parenthesis ends them"),
     Entry("MOVEABSJ MOVABSJ", (RAPID,), JOINTS, _JOINTS),
     Entry("MOVEL", (RAPID, UR, VAL3), LINE, _LINE),
     Entry("MOVELDO", (RAPID,), "moves straight and sets an output", f"{_LINE}\nOUT(1) = 1"),
@@ -74,7 +77,7 @@ MOVES = (
     Entry("MOVJ", (INFORM,), JOINTS, _JOINTS),
     Entry("MOVL", (INFORM,), LINE, _LINE),
     Entry("MOVC", (INFORM,), "is one point of an arc", _ARC, note="one MOVEC has both the via point and the end"),
-    Entry("MOVS", (INFORM,), "is one point of a free curve", _ARC, missing=True),
+    Entry("MOVS", (INFORM,), "is one point of a free curve", _SPLINE, note=_ALL_POINTS),
     Entry("IMOV", (INFORM,), "moves straight by an offset", _SHIFTED),
     Entry("J", (TP,), JOINTS, _JOINTS),
     Entry("L", (TP,), LINE, _LINE),

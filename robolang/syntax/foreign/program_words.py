@@ -354,6 +354,13 @@ OWN = (
     Entry("MOVE", (PAC,), "moves all joints with P, straight with L", "MOVEJ P1", note="with L: MOVE P1"),
     Entry("MOVE", (KAREL,), "moves as $MOTYPE says", "MOVEJ P1", note="with LINEAR: MOVE P1"),
     Entry("MOVEJ", (RAPID, UR, VAL3), "moves all joints together", "MOVEJ P1, SPEED 50", note="SPEED is a percentage"),
+    Entry(
+        "SPLINE",
+        (KRL,),
+        "begins the points of a spline",
+        "SPLINE (P2, P3, P4), SPEED 200",
+        note="one SPLINE has all points in parentheses, and begins where the arm is",
+    ),
     Entry("DEPART", (VPLUS,), "moves the joints back along the tool", "MOVEJ HERE * (0, 0, -50)"),
     Entry("APPROACH", (PAC,), "moves the joints with P, straight with L", "APPROACH P1, 50"),
     Entry("SPEED", (AS, VPLUS, PAC), "is a percentage", "OVERRIDE 50", note="SPEED here is in mm/s"),

@@ -207,7 +207,10 @@ def paused_at(project, cycle, physics=False):
     return session
 
 
-MOVES = "SPEED 400\nMOVE P1\nMOVEC P1 + (60, 60, 0), P1 + (0, 120, 0)\nMOVE P2, ZONE 40\nMOVE P1\n"
+MOVES = (
+    "SPEED 400\nMOVE P1\nMOVEC P1 + (60, 60, 0), P1 + (0, 120, 0)\n"
+    "SPLINE (P1 + (0, 120, 60), P1 + (60, 120, 80), P1 + (0, 60, 0))\nMOVE P2, ZONE 40\nMOVE P1\n"
+)
 
 
 @pytest.mark.parametrize("cycle", range(7, 400, size(13, 93)))

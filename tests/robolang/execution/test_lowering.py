@@ -10,7 +10,7 @@ from robolang.interpreter.effects import MoveTo, SetPayload
 from robolang.project.project import builtin_cell, load_project
 from robolang.values.poses import Place
 from runtime.core.faults import Fault
-from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear
+from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear, MoveSpline
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.robolang.helpers import parsed
 from tests.robolang.running import execute
@@ -55,7 +55,14 @@ def test_units(around):
     joint = command("MOVEJ P1, SPEED 20", around)
     assert isinstance(joint, MoveJoint)
     assert joint.speed == pytest.approx(0.2)
-    assert isinstance(command("MOVEC P1, P2", around), MoveArc)
+    arc = command("MOVEC P1, P2, WRIST HOLD TILT", around)
+    assert isinstance(arc, MoveArc)
+    assert (arc.wrist, arc.held) == ("auto", ("TILT",))
+    spline = command("SPLINE (P1, P2, P3), WRIST HOLD ADVANCE", around)
+    assert isinstance(spline, MoveSpline)
+    assert (len(spline.X_through), spline.held) == (2, ("ADVANCE",))
+    for found, name in zip((*spline.X_through, spline.X_world_tool), ("P1", "P2", "P3"), strict=True):
+        np.testing.assert_array_equal(found, command(f"MOVE {name}", around).X_world_tool)
 
 
 @pytest.mark.parametrize(
@@ -67,6 +74,7 @@ def test_units(around):
         "MOVEJ P1, SPEED 20",
         "MOVEJ P1",
         "MOVEC P1, P2",
+        "SPLINE (P1, P2)",
         "APPROACH P1, 50",
         "DEPART 50, TIME 2",
     ],

@@ -37,6 +37,7 @@ STATEMENTS = (
     "MOVEJ JOINT(0, 0, 0, 0, 0, 1 / Z)",
     "MOVEC P1 + (1 / Z, 0, 0), P2",
     "MOVEC P1, P2, TIME 1 / Z",
+    "SPLINE (P1, P1 + (1 / Z, 0, 0), P2)",
     "APPROACH P1, 1 / Z",
     "DEPART 1 / Z",
     "LOAD (0, 0, 1 / Z), 1",

@@ -17,7 +17,7 @@ from tests.messages import fields, numbers
 
 pytestmark = pytest.mark.physics
 
-OTHERWISE = {"RBL414", "RBL419", "RBL428", "RBL429", "RBL434", "RBL435"}
+OTHERWISE = {"RBL414", "RBL419", "RBL428", "RBL429", "RBL434", "RBL435", "RBL236", "RBL436", "RBL437"}
 START = "LOAD (0, 0, 60), 0.8\nMOVEJ JOINT(0, 60, -190, 0, -60, {})\n"
 ROOT = Path(__file__).parents[3]
 
@@ -225,3 +225,21 @@ def test_a_time_in_a_chain_is_compared_with_what_the_move_takes_there(tmp_path):
     assert code == "RBL429"
     assert numbers(message)[0] == pytest.approx((len(move.s) - 1) * 0.008, abs=0.008)
     assert len(move.s) < len(move.plan.q)
+
+
+CURVES = (
+    ("SPLINE (A + (100, 0, 0), A + (100, 10, 0), A + (0, 10, 0))", "RBL436", "A + (100, 0, 0)", r"24\.2 mm .*10\.0 mm"),
+    ("SPLINE (A + (40, 0, 0), A + (41, 60, 0), A + (40, 60, 40))", None, "", ""),
+    ("SPLINE (A + (60, 60, 40), A + (40, 60, 40))", "RBL437", "A + (60, 60, 40)", ""),
+    ("SPLINE (A + (40, 60, 40), A + (0, 60, 40), A)", None, "", ""),
+    ("SPLINE (B, A + (40, 0, 0), A + (0, 40, 0))", "RBL236", "B", ""),
+)
+
+
+def test_a_spline_that_is_not_what_its_points_look_like_names_them(tmp_path):
+    program = START.format(0) + "A = HERE\nB = A + (40, 0, 0)\n" + "".join(f"{text}, FINE\n" for text, *_ in CURVES)
+    found = {line: (code, message) for code, line, message, _ in both(tmp_path, program)}
+    expected = {line: each for line, each in enumerate(CURVES, start=5) if each[1] is not None}
+    assert {line: code for line, (code, _) in found.items()} == {line: each[1] for line, each in expected.items()}
+    for line, (_, _, point, sizes) in expected.items():
+        assert point in found[line][1] and re.search(sizes, found[line][1])

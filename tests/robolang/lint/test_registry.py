@@ -23,8 +23,8 @@ from tests.robolang.lint.helpers import POINTS
 from tests.together import together
 
 OF_THE_MOTION = {
-    *("RBL410", "RBL411", "RBL412", "RBL414", "RBL416", "RBL419", "RBL421", "RBL422", "RBL423", "RBL424", "RBL425"),
-    *("RBL426", "RBL427", "RBL428", "RBL429", "RBL434", "RBL435", "RBL440", "RBL441"),
+    *("RBL410", "RBL411", "RBL412", "RBL414", "RBL416", "RBL417", "RBL419", "RBL421", "RBL422", "RBL423", "RBL424"),
+    *("RBL425", "RBL426", "RBL427", "RBL428", "RBL429", "RBL434", "RBL435", "RBL436", "RBL437", "RBL440", "RBL441"),
 }
 """Codes that only planning the motion finds."""
 OF_THE_RUN = {

@@ -33,6 +33,7 @@ LINES = st.lists(
             "DEPART 25",
             "APPROACH P2, 40, TIME 3",
             "MOVEC P2, P3, SPEED 90",
+            "SPLINE (P2, P3, P4), SPEED 90",
             "FRAME POSE(5, -3, 2, 0, 0, 12)",
             "FRAME WORLD",
             "TOOL grip",

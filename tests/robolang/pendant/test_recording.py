@@ -103,6 +103,7 @@ def test_the_values_stand_in_the_statements():
         "PAUSE",
         "MOVE POSE(480, -200, 840, 180, 0, 180), SPEED 212.5, ACCEL 12.5",
         "MOVEC POSE(460, -180, 840, 180, 0, 180), POSE(480, -160, 840, 180, 0, 180)",
+        "SPLINE (POSE(460, -180, 840, 180, 0, 180), P1 + (0, 0, 400), POSE(480, -200, 840, 180, 0, 180)), ACCEL 50",
         "DEPART 3",
     )
     found = statements("done.rbl")
@@ -129,6 +130,8 @@ def test_the_values_stand_in_the_statements():
         "FRAME WORLD",
         "MOVE POSE(480, -200, 840, 180, 0, 180), SPEED 212.5, ACCEL 12.5",
         "MOVEC POSE(460, -180, 840, 180, 0, 180), POSE(480, -160, 840, 180, 0, 180), SPEED 200",
+        "SPLINE (POSE(460, -180, 840, 180, 0, 180), P1 + (0, 0, 400), POSE(480, -200, 840, 180, 0, 180)), SPEED 200, "
+        "ACCEL 50",
         "DEPART 3, SPEED 200",
     ]
     same_log(done_again(prompted, "done.rbl"))
@@ -166,9 +169,10 @@ def test_a_statement_in_the_middle_of_a_wait_divides_it(folder):
 
 
 ARC = "MOVEC P2 + (0, 0, 40), P2 + (0, 80, 0), SPEED 100"
+CURVE = "SPLINE (P2 + (0, 0, 40), P2 + (0, 60, 20), P2 + (0, 80, 0)), SPEED 100"
 
 
-@pytest.mark.parametrize("line", ["MOVE P2, TIME 4", "MOVEJ P2, SPEED 20", "DEPART 90, SPEED 60", ARC])
+@pytest.mark.parametrize("line", ["MOVE P2, TIME 4", "MOVEJ P2, SPEED 20", "DEPART 90, SPEED 60", ARC, CURVE])
 def test_a_move_that_was_left_and_regained_is_done_again(folder, line):
     (folder / "a.rbl").write_text(f"MOVE P2 - OFFSET\n{line}\nMOVE P4\n".replace(" - OFFSET", " + (0, -60, 0)"))
     prompted = prompt(folder / "a.rbl")
@@ -184,8 +188,8 @@ def test_a_move_that_was_left_and_regained_is_done_again(folder, line):
     found = statements("done.rbl")
     assert len(found) == 6
     assert "JOINT(" in found[1]
-    # the tool takes the same path, an arc too
-    if line == ARC:
+    # the tool takes the same path, an arc and a spline too
+    if line in (ARC, CURVE):
         there = again["X_world_tool"][:, :3, 3]
         for p in log["X_world_tool"][::50, :3, 3]:
             assert np.linalg.norm(there - p, axis=1).min() < 1e-3

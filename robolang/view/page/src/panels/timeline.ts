@@ -18,7 +18,7 @@ const REACH = 3;
 
 type Kind = "move" | "hand" | "load" | "wait" | "other";
 const KINDS: readonly (readonly [RegExp, Kind])[] = [
-  [/^(MOVE|MOVEJ|MOVEC|APPROACH|DEPART)\b/, "move"],
+  [/^(MOVE|MOVEJ|MOVEC|SPLINE|APPROACH|DEPART)\b/, "move"],
   [/^HAND\b/, "hand"],
   [/^(LOAD|TOOL|FRAME)\b/, "load"],
   [/^(DELAY|WAIT|PAUSE)\b/, "wait"],
