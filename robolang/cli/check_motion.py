@@ -11,7 +11,7 @@ from pathlib import Path
 from textwrap import wrap
 
 from robolang.analysis.analysis import Analysis
-from robolang.cli import lines
+from robolang.cli import lines, speed_cells
 from robolang.cli.run_table import estimates
 from robolang.core.bounds import Bounds
 from robolang.core.diagnostics import Diagnostic, safe
@@ -34,11 +34,14 @@ _COLUMNS = (
     ("times", ""),
     ("time", "s"),
     ("path", "mm"),
+    ("speed", "mm/s"),
     ("fastest", "joint %"),
     ("margin", "deg"),
     ("wrist", "deg"),
 )
 """Heading and unit of the columns after the statement."""
+_LIMITED = ("limited", "by")
+"""The same of the column that stands there as well where a move does not reach its speed."""
 
 
 @contextmanager
@@ -137,12 +140,18 @@ def _missed(project: Project, explored: Exploration) -> list[int]:
 def _table(project: Project, rehearsal: Rehearsal, rows: Sequence[LineTime]) -> str:
     where = lines.headings([asdict(row) for row in rows])
     blank, (names, units) = [""] * len(where), zip(*_COLUMNS, strict=True)
+    limited = [speed_cells.limited(asdict(row)) for row in rows]
     cells = [
-        [*where, "statement", *names],
-        [*blank, "", *units],
-        *([*lines.cells(asdict(row), where), safe(row.text), *_cells(row, project.cell.robot)] for row in rows),
-        [*blank, "total", "", f"{rehearsal.total_us / 1e6:.3f}", *[""] * (len(names) - 2)],
+        [*where, "statement", *names, _LIMITED[0]],
+        [*blank, "", *units, _LIMITED[1]],
+        *(
+            [*lines.cells(asdict(row), where), safe(row.text), *_cells(row, project.cell.robot), by]
+            for row, by in zip(rows, limited, strict=True)
+        ),
+        [*blank, "total", "", f"{rehearsal.total_us / 1e6:.3f}", *[""] * (len(names) - 1)],
     ]
+    if not any(limited) or _room(cells, len(where)) < _NARROWEST:
+        cells = [row[:-1] for row in cells]
     facts = estimates(list(project.cell.robot.estimated))
     wrapped = [each for line in facts for each in wrap(line, _WIDTH)]
     table = [
@@ -156,15 +165,25 @@ def _table(project: Project, rehearsal: Rehearsal, rows: Sequence[LineTime]) -> 
 
 def _aligned(rows: Sequence[Sequence[str]], statement: int) -> Iterator[str]:
     """Yield the lines of a table: numbers as wide as they need, the column ``statement`` with the room that is left."""
-    widths = [max(map(len, column)) for column in zip(*rows, strict=True)]
-    room = _WIDTH - sum(widths) + widths[statement] - len(widths) - 1  # a space between columns, two at the statement
-    widths[statement] = max(_NARROWEST, min(widths[statement], room))
+    widths = _widths(rows)
+    widths[statement] = max(_NARROWEST, min(widths[statement], _room(rows, statement)))
     for row in rows:
         text, width = row[statement], widths[statement]
         cut = text if len(text) <= width else f"{text[: width - 1]}…"
         cells = [f"{cell:>{width}}" for cell, width in zip(row, widths, strict=True)]
         cells[statement] = f" {cut:<{width}}"
         yield f" {' '.join(cells)}"
+
+
+def _widths(rows: Sequence[Sequence[str]]) -> list[int]:
+    return [max(map(len, column)) for column in zip(*rows, strict=True)]
+
+
+def _room(rows: Sequence[Sequence[str]], statement: int) -> int:
+    """Return how wide the column ``statement`` may be so that the table is as wide as a report."""
+    widths = _widths(rows)
+    # a space between columns, two at the statement
+    return _WIDTH - sum(widths) + widths[statement] - len(widths) - 1
 
 
 def _branches(project: Project, explored: Exploration) -> str:
@@ -224,6 +243,7 @@ def _cells(row: LineTime, robot: RobotSpec) -> tuple[str, ...]:
         str(row.count),
         f"{row.seconds:.3f}",
         "" if row.length_mm is None else f"{row.length_mm:.1f}",
+        speed_cells.cell(asdict(row)),
         "" if row.speed_pct is None else f"{row.joint} {f'{known}{row.speed_pct:.0f}':>4}",
         ", ".join(
             f"{least:.1f}{mm}" for least, mm in ((row.margin_deg, ""), (row.margin_mm, " mm")) if least is not None

@@ -11,9 +11,10 @@ from typing import Any, NamedTuple
 from rich import box
 from rich.table import Table
 
-from robolang.cli import lines
+from robolang.cli import lines, speed_cells
 from robolang.cli.console import Console
 from robolang.core.diagnostics import safe
+from robolang.execution.speed_keys import slowest
 from runtime.robot.model.estimated import decisive, groups
 
 
@@ -35,8 +36,12 @@ _COLUMNS = (
     _Column("path\nerror\nmm", "path_deviation_mm", "{:.3f}"),
     _Column("peak\ntorque\n%", "peak_torque_pct", "{:.0f}"),
 )
+_SPEEDS = (_Column("speed\n\nmm/s", "speed", "{}"), _Column("limited\nby\n", "limited_by", "{}"))
+"""What is programmed of moves and reached: in columns where the terminal is wide enough."""
 _TIMES = _Column("times\n\n", "times", "{:.0f}", sum)
 _NARROWEST, _WIDEST = 12, 40
+_ROOMY = 104
+"""Columns of a terminal from which on the table has the speeds as well."""
 
 
 def print_result(report: dict[str, Any], *, every: bool = False, worst: bool = False) -> None:
@@ -44,16 +49,24 @@ def print_result(report: dict[str, Any], *, every: bool = False, worst: bool = F
     first."""
     console = Console()
     console.print(safe(f"{report['program']} on {report['robot']}"), style="italic", soft_wrap=True)
-    rows = [{**statement, "times": 1} for statement in report["statements"]]
+    rows = [{**statement, "times": 1, "speed": speed_cells.cell(statement)} for statement in report["statements"]]
     rows = rows if every else _by_line(rows)
     if worst:
         # what has no error has taken no time, and comes last
         rows.sort(key=lambda row: -1.0 if row["tool_error_mm"] is None else row["tool_error_mm"], reverse=True)
     console.print(_statements(rows, console.width))
-    for note in dict.fromkeys(f"  {lines.name(row)}: {note}" for row in rows for note in row["notes"]):
+    narrow = console.width < _ROOMY
+    for note in dict.fromkeys(f"  {lines.name(row)}: {note}" for row in rows for note in _notes(row, narrow=narrow)):
         console.print(note)
     for line in _facts(report):
         console.print(line)
+
+
+def _notes(row: Mapping[str, Any], *, narrow: bool) -> list[str]:
+    """Return the notes of a row, with what keeps it from its speed where no column shows that."""
+    # most short moves do not reach their speed, which is no news
+    limited = narrow and row["limited_by"] not in (None, "length")
+    return [*row["notes"], *([speed_cells.sentence(row)] if limited else [])]
 
 
 def _by_line(statements: Sequence[Mapping[str, Any]]) -> list[dict[str, Any]]:
@@ -71,7 +84,8 @@ def _together(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     for column in (_TIMES, *_columns(rows)):
         numbers = [row[column.key] for row in rows if row[column.key] is not None]
         together[column.key] = column.of(numbers) if numbers else None
-    return {**together, "notes": [note for row in rows for note in row["notes"]]}
+    together |= slowest(rows)
+    return {**together, "speed": speed_cells.cell(together), "notes": [note for row in rows for note in row["notes"]]}
 
 
 def _columns(statements: Sequence[Mapping[str, Any]]) -> tuple[_Column, ...]:
@@ -81,12 +95,19 @@ def _columns(statements: Sequence[Mapping[str, Any]]) -> tuple[_Column, ...]:
     return tuple(column for column in _COLUMNS if column.key in keys)
 
 
+def _shown(statements: Sequence[Mapping[str, Any]], width: int) -> tuple[_Column, ...]:
+    """Return the columns of a table that is ``width`` wide."""
+    # a program without loops has no need of the times
+    times = [_TIMES] if any(row["times"] > 1 for row in statements) else []
+    # nor one without moves of their speeds
+    speeds = [each for each in _SPEEDS if width >= _ROOMY and any(row.get(each.key) for row in statements)]
+    return (*times, *_columns(statements), *speeds)
+
+
 def _statements(statements: Sequence[Mapping[str, Any]], width: int) -> Table:
     table = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0))
     where = lines.headings(statements)
-    # a program without loops has no need of it
-    columns = _columns(statements)
-    columns = (_TIMES, *columns) if any(row["times"] > 1 for row in statements) else columns
+    columns = _shown(statements, width)
     for heading in where:
         table.add_column(heading, justify="right", no_wrap=True)
     table.add_column("statement", no_wrap=True)

@@ -46,6 +46,7 @@ from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamTracker
+from runtime.motion.speeds import Speeds
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import Payload
 
@@ -325,12 +326,13 @@ class ControllerTarget:
         # nothing follows into which it could blend
         runs[-1].effect = replace(chain[-1].effect, zone_mm=0.0)
         seam = None if self._tracker is None else self._tracker.name
-        for run, part in zip(runs, plan.parts, strict=True):
+        speeds = controller.requests.speeds(plan, [each.command for each in chain])
+        for at, (run, part) in enumerate(zip(runs, plan.parts, strict=True)):
             run.path, run.notes = part.path, [*run.notes, *part.notes]
-            run.planned_s = part.planned_s
+            run.planned_s, run.speeds, run.at = part.planned_s, speeds, at
             # a move has begun when its first set-point is sent (``_reach``)
             run.wrist, run.seam, run.begun = part.wrist, seam, False
-        self._warn(chain, plan)
+        self._warn(chain, plan, speeds)
         last = len(self._record.statements) - 1
         self._activity = Motion(first=last + 1 - len(runs), last=last, lost=self._lost)
         self._seen.run_began(runs[0], self.time_us)
@@ -343,9 +345,8 @@ class ControllerTarget:
     def _lost(self) -> int:
         return 0 if self._tracker is None else self._tracker.lost
 
-    def _warn(self, chain: Sequence[Requested], plan: ChainPlan) -> None:
+    def _warn(self, chain: Sequence[Requested], plan: ChainPlan, speeds: Speeds) -> None:
         """Warn where the motion is not the one that the program states, once for a code and a statement."""
-        speeds = self._record.controller.requests.speeds(plan, [each.command for each in chain])
         for move in planned_moves(chain, plan, speeds):
             for found in self._findings.of(move):
                 origin = move.effect.origin

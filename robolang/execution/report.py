@@ -14,6 +14,7 @@ from robolang.execution.alarms import as_json
 from robolang.execution.measures import Measured
 from robolang.execution.result import RunRecord, StatementRun
 from robolang.execution.run_report import Report, report_of
+from robolang.execution.speed_keys import KEYS, speed_keys
 from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
 from runtime.core.frames import Array, xyzrpy_from_pose
@@ -69,6 +70,7 @@ _MEASURED = (
     "start_s",
     "duration_s",
     "planned_s",
+    *KEYS,
     "joint_error_deg",
     "joint_error_mm",
     "tool_error_mm",
@@ -92,6 +94,7 @@ def _statement(run: StatementRun, measured: Measured, controller: Controller) ->
         "start_s": run.first_tick * tick_us / 1_000_000,
         "duration_s": (end - run.first_tick) * tick_us / 1_000_000,
         "planned_s": run.planned_s,
+        **speed_keys(run.reached),
         "joint_error_deg": measured.joint_deg,
         "joint_error_mm": measured.joint_mm,
         "tool_error_mm": measured.tool_mm,

@@ -12,6 +12,8 @@ from runtime.control.controller import Controller
 from runtime.core.faults import Alarm
 from runtime.motion.cartesian_planner import WristChange
 from runtime.motion.path import Path
+from runtime.motion.reached import Reached
+from runtime.motion.speeds import Speeds
 
 GOES_ON = -1
 """``end_tick`` of a statement that has not ended: tick 0 is one at which a statement may end."""
@@ -26,7 +28,8 @@ class StatementRun:
     one lost meanwhile; ``lamp`` what the pendant's lamp shows now, by ``wrist_mode`` (``controller_target.LAMPS``).
     ``effect`` is what was carried out, a WAIT's the first, with zone 0 where the move did not blend; None: given
     set-points. ``points`` are the taught points that it names, as they were. ``rest``: joint angles (n,) deg where the
-    arm came to rest short of the end of the effect, or at the end of given set-points.
+    arm came to rest short of the end of the effect, or at the end of given set-points. ``speeds`` are those of its
+    chain, in which it is move ``at``; None: it is no planned move.
     """
 
     origin: Origin
@@ -43,7 +46,15 @@ class StatementRun:
     effect: Effect | None = None
     points: tuple[Point, ...] = ()
     rest: tuple[float, ...] | None = None
+    speeds: Speeds | None = None
+    at: int = 0
     notes: list[str] = field(default_factory=list)
+
+    @property
+    def reached(self) -> Reached | None:
+        """What became of the speed of a planned move."""
+        # judged when a report is made, and only then
+        return None if self.speeds is None else self.speeds.moves[self.at]
 
     @property
     def ended(self) -> bool:

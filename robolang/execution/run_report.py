@@ -51,6 +51,12 @@ class StatementReport(dict[str, Any]):
     start_s = Key[float | None]("When it began, s of simulated time.")
     duration_s = Key[float | None]("How long it took, s.")
     planned_s = Key[float | None]("How long its motion was planned to take, s; None without motion.")
+    programmed_mm_s = Key[float | None]("Programmed speed of the tool point, mm/s; None with TIME and of MOVEJ.")
+    reached_mm_s = Key[float | None]("Highest planned speed of the tool point, mm/s; None of MOVEJ.")
+    programmed_pct = Key[float | None]("Programmed speed of MOVEJ, % of the joints' speeds; None with TIME.")
+    reached_pct = Key[float | None]("Highest planned speed of MOVEJ, % of the joints' speeds.")
+    limited_by = Key[str | None]("What keeps the move from its speed, such as ``J5 speed``; None: nothing does.")
+    limited_why = Key[str | None]("The same in words, with place and numbers.")
     joint_error_deg = Key[float | None]("Largest distance of a joint from its command, deg.")
     joint_error_mm = Key[float | None](
         "Largest distance of a joint that slides from its command, mm; no key where all joints turn."

@@ -50,7 +50,7 @@ class Reached:
     ``programmed`` with OVERRIDE, None with TIME and where the tool turns in place; ``reached``: the highest, counted up
     to the programmed one, since in a corner the speed goes over from that of one move to that of the next. ``seconds``
     that the move takes of its chain, ``expected_s`` those that its speed and the acceleration of the path let expect, 0
-    where no path is. ``why`` None: nothing keeps it from its speed.
+    where no path is. ``why`` None: nothing keeps it from its speed. ``of_joints``: of a joint move.
     """
 
     programmed: float | None
@@ -58,3 +58,4 @@ class Reached:
     seconds: float
     expected_s: float
     why: Why | None
+    of_joints: bool

@@ -146,7 +146,12 @@ class Speeds:
         timed = self._commands[k].duration is not None
         why = self._why(k, fastest=short or timed) if short or times.late(k) else None
         return Reached(
-            programmed=programmed, reached=reached, seconds=times.seconds(k), expected_s=times.expected_s[k], why=why
+            programmed=programmed,
+            reached=reached,
+            seconds=times.seconds(k),
+            expected_s=times.expected_s[k],
+            why=why,
+            of_joints=self._joint_move(k),
         )
 
     def _joint_move(self, k: int) -> bool:
@@ -208,15 +213,22 @@ class Speeds:
         before, after = self._beside(k, at)
         if self._even(k, at, slice(before, after + 1)):
             return self._at_slow_place(k, at)
+        ramps = [
+            (before, slice(max(before, span.first), at + 1)),
+            (after, slice(at, min(after + 1, span.last))),
+        ]
         # towards a side on which the speed still rises, as on the long ramp of short moves, nothing keeps it low
-        rises = at > 0 and pace[at - 1] > pace[at], at + 1 < len(pace) and pace[at + 1] > pace[at]
-        falls = (before, slice(max(before, span.first), at + 1)), (after, slice(at, min(after + 1, span.last)))
-        ramps = [each for each, rising in zip(falls, rises, strict=True) if not rising]
+        ramps = [ramp for ramp, beside in zip(ramps, (at - 1, at + 1), strict=True) if not self._rises(k, at, beside)]
         found = self._on_ramps(k, *(ramp for _, ramp in ramps))
         if found is not None:
             return found
         corners = (self._in_corner(k, valley) for valley, _ in ramps if not pace[valley] > _SLOWER * pace[at])
         return next(filter(None, corners), None) or self._short(k, [valley for valley, _ in ramps])
+
+    def _rises(self, k: int, at: int, beside: int) -> bool:
+        """Return whether a move is faster in the cycle beside another one."""
+        pace = self._pace(k)
+        return bool(pace[min(max(beside, 0), len(pace) - 1)] > pace[at])
 
     def _beside(self, k: int, at: int) -> tuple[int, int]:
         """Return the slow places before and after a cycle."""
@@ -367,7 +379,7 @@ class Speeds:
 
 
 def _nothing() -> Reached:
-    return Reached(programmed=None, reached=0.0, seconds=0.0, expected_s=0.0, why=None)
+    return Reached(programmed=None, reached=0.0, seconds=0.0, expected_s=0.0, why=None, of_joints=False)
 
 
 def _largest(shares: Array) -> tuple[int, float]:

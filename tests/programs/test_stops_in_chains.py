@@ -4,6 +4,7 @@ import pytest
 
 from robolang.cli.run_table import print_result
 from robolang.execution.session import Session
+from robolang.execution.speed_keys import KEYS
 from robolang.experiments.compare import measures
 from robolang.project.project import load_project
 
@@ -21,6 +22,7 @@ MEASURED = {
     "start_s",
     "duration_s",
     "planned_s",
+    *KEYS,
     "joint_error_deg",
     "tool_error_mm",
     "path_deviation_mm",

@@ -16,6 +16,7 @@ import pytest
 import robolang
 from robolang import api
 from robolang.execution.run_report import report_of
+from robolang.execution.speed_keys import KEYS
 from tests.programs.runs import ROOT
 from tests.robolang.cli.commands import robolang as robolang_command
 
@@ -290,7 +291,8 @@ def test_a_report_has_attributes_for_its_keys(ran):
         assert getattr(report, name) == report[name]
         assert getattr(type(report), name).__doc__
     for each in report.statements:
-        for name in ("line", "number", "text", "begun", "start_s", "duration_s", "planned_s", "tool_error_mm", "notes"):
+        names = ("line", "number", "text", "begun", "start_s", "duration_s", "planned_s", "tool_error_mm", "notes")
+        for name in (*names, *KEYS):
             assert getattr(each, name) == each[name]
     with pytest.raises(AttributeError):
         report.ok = False

@@ -12,6 +12,7 @@ from typer.testing import CliRunner
 
 from robolang.cli import run_table
 from robolang.cli.main import app
+from robolang.execution.speed_keys import NO_SPEED
 from robolang.logs.files import read_log
 from tests.campaign import some
 from tests.messages import fields, heads
@@ -62,6 +63,7 @@ def report(**changes):
         "begun": True,
         "start_s": 3599.123,
         "duration_s": 3600.123,
+        **NO_SPEED,
         "joint_error_deg": 123.4567,
         "tool_error_mm": 12.3456,
         "path_deviation_mm": 12.3456,
@@ -106,6 +108,28 @@ def test_a_short_statement_is_not_cut_and_a_wide_terminal_shows_more(monkeypatch
     monkeypatch.setenv("COLUMNS", "120")
     run_table.print_result(report(text=LONG[4 : 4 + 40]), every=True)
     assert "…" not in capsys.readouterr().out
+
+
+def test_speeds_have_columns_where_there_is_room_and_notes_where_a_limit_is_news(monkeypatch, capsys):
+    slow = {"programmed_mm_s": 200.0, "reached_mm_s": 83.4, "limited_by": "J5 speed", "limited_why": "J5 takes 99 %"}
+
+    def shown(width, **changes):
+        monkeypatch.setenv("COLUMNS", str(width))
+        run_table.print_result(report(text="MOVE P1", **changes), every=True)
+        return capsys.readouterr().out
+
+    wide = shown(120, **slow)
+    assert {"83/200", "J5", "limited"} <= set(wide.split())
+    assert slow["limited_why"] not in wide
+    narrow = shown(80, **slow)
+    assert "limited" not in narrow
+    assert narrow.count(slow["limited_why"]) == 1
+    assert "(83/200 mm/s" in narrow
+    # most short moves do not reach their speed
+    assert slow["limited_why"] not in shown(80, **(slow | {"limited_by": "length"}))
+    kept = shown(120, programmed_pct=30.0, reached_pct=29.7)
+    assert " 30 % " in kept
+    assert "limited" not in kept
 
 
 LOOP = "FOR k = 1 TO 3\nMOVEJ HERE + (0, 0, 10 * k)\nMOVEJ HERE + (0, 0, -10 * k)\nNEXT k\nMOVEJ HERE + (0, 0, 5)\n"
