@@ -66,6 +66,7 @@ bench: $(READY)
 	$(BIN)/python -m tests.bench.inertia
 	$(BIN)/python -m tests.bench.check
 	$(BIN)/python -m tests.bench.prompt
+	$(BIN)/python -m tests.bench.long_path
 
 view-bench: $(READY)
 	$(BIN)/python -m tests.bench.pages
@@ -84,6 +85,7 @@ docs: $(READY)
 
 measured: $(READY)
 	$(BIN)/python -m tests.bench.measure
+	$(BIN)/python -m tests.bench.short_moves
 
 plots: $(READY)
 	$(BIN)/python -m tests.bench.plots

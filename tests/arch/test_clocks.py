@@ -30,6 +30,7 @@ MEASURING = {
     "bench/gcode_campaign.py",
     "bench/inertia.py",
     "bench/live.py",
+    "bench/long_path.py",
     "bench/pages.py",
     "bench/prompt.py",
     "bench/pulse_campaign.py",

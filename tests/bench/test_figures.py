@@ -20,6 +20,7 @@ from tests.bench import (
     inertia,
     jog_campaign,
     live,
+    long_path,
     measure,
     mutants,
     pages,
@@ -27,6 +28,7 @@ from tests.bench import (
     prompt,
     pulse_campaign,
     run,
+    short_moves,
     stop_campaign,
     wrist_campaign,
 )
@@ -37,9 +39,9 @@ from tests.fuzz import large, targets
 ROOT = Path(__file__).parents[2]
 MAKEFILE = (ROOT / "Makefile").read_text("utf-8")
 BENCHES = {
-    "make bench": (run.rows, inertia.rows, check.rows, prompt.rows),
+    "make bench": (run.rows, inertia.rows, check.rows, prompt.rows, long_path.rows),
     "make view-bench": (pages.rows, frames.rows, live.rows),
-    "make measured": (measure.rows,),
+    "make measured": (measure.rows, short_moves.rows),
     "make fault-campaign": (campaign.fault_rows,),
     "make supervision-campaign": (campaign.payload_rows,),
     "make blend-campaign": (blend_campaign.rows,),
