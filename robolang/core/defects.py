@@ -8,7 +8,7 @@ from runtime.core.faults import Fault
 _LIBRARIES = frozenset(
     (
         *("google", "lark", "mcap", "mcap_protobuf", "mujoco", "numpy", "pinocchio", "prompt_toolkit"),
-        *("rich", "ruckig", "tomlkit", "typer", "websockets"),
+        *("rich", "ruckig", "scipy", "tomlkit", "typer", "websockets"),
     )
 )
 """What the dependencies of robolang are imported as; an install that checks text has one of them (docs/ci.md)."""

@@ -31,6 +31,8 @@ _PARTS = 4
 """Parts of the curve between two points, of which what is left of it is made."""
 _BETWEEN = 32
 """Places between two points at which a curve is measured."""
+_NEAREST = 3
+"""Nodes of the curve beside a point from which its distance is sought."""
 _STILL = 1e-6
 """A share of the chord's speed below which there is no direction."""
 
@@ -138,11 +140,15 @@ class SplinePath:
         from scipy.spatial import KDTree
 
         places = self.curve.at(self.curve.nodes)[0][:, :3]
-        nearest = np.asarray(KDTree(places).query(points)[1], dtype=np.intp)
-        u = self.curve.nodes[nearest]
+        # several nodes of each: where the curve is closed or crosses itself, the nearest one may be of the wrong part
+        nodes = self.curve.nodes[np.asarray(KDTree(places).query(points, _NEAREST)[1], dtype=np.intp)]
+        return np.asarray(np.min([self._distance(points, u) for u in nodes.T], axis=0))
+
+    def _distance(self, points: Array, u: Array) -> Array:
+        """Return the distances (N,) of points (N, 3) from the curve near to u (N,)."""
         for _ in range(3):
+            # Newton's step without the curvature: from a near node three of them reach rounding
             value, first, _ = (each[:, :3] for each in self.curve.at(u))
-            # Newton's step without the curvature: from the nearest node three of them reach rounding
             step = ((points - value) * first).sum(axis=1) / np.maximum((first**2).sum(axis=1), SLOW**2)
             u = np.clip(u + step, self.curve.knots[0], self.curve.knots[-1])
         return np.asarray(np.linalg.norm(points - self.curve.at(u)[0][:, :3], axis=1))

@@ -24,7 +24,7 @@ def place(name, part):
 
 def test_there_are_at_least_ten_programs():
     assert len(ALL) >= 10
-    assert set(SHOP) == {"cans", "dispense", "inspect", "nuts", "palletise", "recover", "sort", "tend"}
+    assert set(SHOP) == {"cans", "dispense", "glue", "inspect", "nuts", "palletise", "recover", "sort", "tend"}
 
 
 @pytest.mark.parametrize("name", SHOP)
@@ -53,7 +53,7 @@ def test_every_move_begins_and_ends_as_rehearsed(name):
     """
     session, result = run(name)
     tick_us = session.project.profile.tick_us
-    ran = [each for each in session.record.statements if each.text.startswith(("MOVE", "APPROACH", "DEPART"))]
+    ran = [each for each in session.record.statements if each.text.startswith(("MOVE", "SPLINE", "APPROACH", "DEPART"))]
     planned = rehearse(session.project).moves
     assert [each.origin.line for each in ran] == [move.effect.line for move in planned]
     for each, move in zip(ran, planned, strict=True):
@@ -100,6 +100,19 @@ def test_a_bead_is_laid_without_a_stop():
     assert speed.min() > 0.02
     assert speed.max() < 0.125
     assert printed("dispense")[0].startswith("bead of 526 mm in ")
+
+
+def test_glue_is_laid_through_all_taught_points_at_one_speed():
+    session, result = run("shop/glue.rbl")
+    (row,) = (each for each in session.record.statements if each.text.startswith("SPLINE"))
+    X = session.controller.tool_poses(result.log["q_cmd"])[row.first_tick : row.end_tick, :3, 3]
+    speed = np.linalg.norm(np.diff(X, axis=0), axis=1) / session.project.profile.tick_s
+    middle = speed[len(speed) // 4 : -len(speed) // 4]
+    assert middle.min() == pytest.approx(0.1, rel=0.01)
+    assert middle.max() == pytest.approx(0.1, rel=0.01)
+    for point in row.points:
+        assert np.linalg.norm(X - np.array(point.pose[:3]) / 1000.0, axis=1).min() < 1e-4
+    assert row.path.deviation(X).max() < 5e-5
 
 
 def test_stations_are_looked_at_from_four_sides():

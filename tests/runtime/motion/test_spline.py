@@ -208,6 +208,13 @@ def test_a_thousand_points_in_a_row():
     assert path.deviation(path.points(s) + [0.0, 0.0, 1e-4]).max() == pytest.approx(1e-4, rel=1e-3)
 
 
+def test_the_distance_from_a_closed_curve_is_that_of_its_nearest_part():
+    places = [(0.0, 0.0, 0.0), (0.1, 0.0, 0.0), (0.1, 0.1, 0.0), (0.0, 0.1, 0.0), (0.0, 0.0, 0.0)]
+    path = at_places(places)
+    points = path.points(np.linspace(0.0, 1.0, 997)) + [0.0, 0.0, 1e-4]
+    np.testing.assert_allclose(path.deviation(points), 1e-4, rtol=1e-6)
+
+
 def planned(name: str, shape: str = "jerk", override: float = 1.0, turn: float = 0.3, size: float = 1.0, **options):
     robot = bench(name, shape)
     q = robot.home()
