@@ -15,7 +15,7 @@ from runtime.core.frames import Array
 
 TOGETHER = "+"
 """What stands between signals that are drawn in one panel."""
-_MOVED = "Draw the log of a run that moves the arm or takes time."
+MOVED = "Draw the log of a run that moves the arm or takes time."
 _ROUNDING_S = 1e-9
 """The tick at 0.1 s may be a bit before it; a window from 0.1 s has it."""
 
@@ -33,25 +33,26 @@ def plot_of(log: Log, selections: Sequence[str], window: Window) -> SignalPlot:
     without two rows, ``ValueError`` for a window without them."""
     chosen = [[_columns(log, name) for name in text.split(TOGETHER)] for text in selections]
     times = log["t"]
-    rows = _rows(times, window)
+    rows = rows_of(times, window)
     # one row has no extent in time, and the scale would divide by it
     if len(times) < 2:
-        raise Fault("RBL832", f"{log.source} is of a run without motion: there is nothing to draw", _MOVED)
+        raise Fault("RBL832", f"{log.source} is of a run without motion: there is nothing to draw", MOVED)
     if len(rows) < 2:
         raise ValueError("there is nothing between these times")
     first, last = float(times[rows[0]]), float(times[rows[-1]])
     panels = [panel for group in chosen for panel in _panels(log, [each for part in group for each in part], window)]
     return SignalPlot(
-        title=_title(log),
+        title=title_of(log),
         panels=tuple(panels),
-        blocks=tuple(_blocks(log, rows)),
-        strip="number" if _numbered(log) else "line",
+        blocks=tuple(blocks_of(log, rows, times[rows.start : rows.stop])),
+        strip="number" if numbered(log) else "line",
         first=first,
         last=last,
     )
 
 
-def _title(log: Log) -> str:
+def title_of(log: Log) -> str:
+    """Return the program and the robot of a log, or its file."""
     if log.meta is None:
         return log.source
     return f"{log.meta['program'].get('name')}, {log.meta['robot'].get('name')}"
@@ -64,7 +65,7 @@ def _columns(log: Log, text: str) -> tuple[Column, ...]:
     return lengths or found
 
 
-def _rows(times: Array, window: Window) -> range:
+def rows_of(times: Array, window: Window) -> range:
     """Return the rows within a window, of times that rise."""
     first = 0 if window.first is None else int(np.searchsorted(times, window.first - _ROUNDING_S, "left"))
     last = len(times) if window.last is None else int(np.searchsorted(times, window.last + _ROUNDING_S, "right"))
@@ -86,7 +87,7 @@ def _panels(log: Log, columns: Sequence[Column], window: Window) -> Iterator[Sig
 def _line(log: Log, column: Column, window: Window, names: Sequence[str]) -> Line:
     """Return a column as a curve of a panel with the signals of these ``names``."""
     times = log["frame_t" if log.base(column.signal) == "frame" else "t"]
-    rows = _rows(times, window)
+    rows = rows_of(times, window)
     values = log.span(column.signal, rows.start, rows.stop).reshape(len(rows), -1)[:, column.index]
     # a run that went wrong may hold any number
     with np.errstate(over="ignore"):
@@ -96,16 +97,16 @@ def _line(log: Log, column: Column, window: Window, names: Sequence[str]) -> Lin
     return Line(name=name, x=times[rows.start : rows.stop], y=y, dashed=column.signal != names[0])
 
 
-def _numbered(log: Log) -> bool:
+def numbered(log: Log) -> bool:
     """Return whether the statements of a run have numbers, by which people then know them."""
     return "number" in log and bool(log["number"].any())
 
 
-def _blocks(log: Log, rows: range) -> Iterator[Block]:
-    """Yield the statements that run, in order; none for a log without lines."""
+def blocks_of(log: Log, rows: range, at: Array) -> Iterator[Block]:
+    """Yield the statements that run, in order, by the places (N,) of their rows; none for a log without lines."""
     if "line" not in log:
         return
-    lines, times = log.span("line", rows.start, rows.stop), log["t"]
+    lines = log.span("line", rows.start, rows.stop)
     numbers = log.span("number", rows.start, rows.stop) if "number" in log else np.zeros_like(lines)
     texts = [] if log.meta is None else str(log.meta["program"].get("text", "")).splitlines()
     edges = [0, *(np.flatnonzero(np.diff(lines)) + 1).tolist(), len(lines)]
@@ -113,9 +114,9 @@ def _blocks(log: Log, rows: range) -> Iterator[Block]:
         line, number = int(lines[begin]), int(numbers[begin])
         if line:
             yield Block(
-                begins=float(times[rows[begin]]),
+                begins=float(at[begin]),
                 # the last one ends with the window
-                ends=float(times[rows[min(end, len(rows) - 1)]]),
+                ends=float(at[min(end, len(rows) - 1)]),
                 number=str(number or line),
                 text=texts[line - 1].strip() if 0 < line <= len(texts) else "",
             )

@@ -24,7 +24,8 @@ _TIMES = 12.0
 _KEY_ROW = 16
 _LETTER = 6.7
 """Width of a letter, px; the names in the strip of statements are left out where they have no room."""
-_INNER = WIDTH - LEFT - RIGHT
+COLUMNS = WIDTH - LEFT - RIGHT
+"""Columns of the picture."""
 _NONE = re.compile("[\ufffe\uffff]")  # XML 1.0, production 2
 _NARROWEST = 0.2
 """Statements that are narrower, px, are left out of the strip."""
@@ -42,7 +43,7 @@ class Line:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SignalPanel:
-    """Curves of one unit over the time axis."""
+    """Curves of one unit over the axis of the plot."""
 
     label: str
     lines: tuple[Line, ...]
@@ -55,7 +56,7 @@ class SignalPanel:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Block:
-    """A statement that runs from ``begins`` to ``ends``, s: its number for the strip, and its ``text``."""
+    """A statement that runs from ``begins`` to ``ends`` on the axis: its number for the strip, and its ``text``."""
 
     begins: float
     ends: float
@@ -65,7 +66,7 @@ class Block:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class SignalPlot:
-    """What is drawn, from ``first`` to ``last``, s; ``strip``: what the numbers of the blocks are."""
+    """What is drawn, from ``first`` to ``last`` on an ``axis``; ``strip``: what the numbers of the blocks are."""
 
     title: str
     panels: tuple[SignalPanel, ...]
@@ -73,6 +74,7 @@ class SignalPlot:
     first: float
     last: float
     strip: str = "line"
+    axis: str = "time, s"
 
     def as_svg(self) -> str:
         """Return the drawing."""
@@ -94,7 +96,7 @@ class SignalPlot:
         return "\n".join([*parts, "</svg>", ""])
 
     def _x(self, time: float) -> float:
-        return LEFT + (time - self.first) / (self.last - self.first) * _INNER
+        return LEFT + (time - self.first) / (self.last - self.first) * COLUMNS
 
     def _strip(self, bottom: int) -> list[str]:
         parts = []
@@ -128,7 +130,7 @@ class SignalPlot:
                     svg.rule(x, TOP + STRIP, x, bottom, "#dcdcdc"),
                     svg.label(x, bottom + 16, f"{tick:.10g}", "middle"),
                 ]
-        return [*parts, svg.label(LEFT + _INNER / 2, bottom + 33, "time, s", "middle")]
+        return [*parts, svg.label(LEFT + COLUMNS / 2, bottom + 33, self.axis, "middle")]
 
     def _panel(self, panel: SignalPanel, top: int) -> list[str]:
         levels = svg.ticks(svg.span([line.y for line in panel.lines]))
@@ -138,7 +140,7 @@ class SignalPlot:
         for level in levels:
             y = bottom - (level - levels[0]) * scale
             parts += [
-                svg.rule(LEFT, y, LEFT + _INNER, y, "#dcdcdc"),
+                svg.rule(LEFT, y, LEFT + COLUMNS, y, "#dcdcdc"),
                 svg.label(LEFT - 6, y + 4, f"{level:.10g}", "end"),
             ]
         parts.append(svg.upright((top + bottom) / 2, _plain(panel.label)))
@@ -146,7 +148,7 @@ class SignalPlot:
             look = f'stroke="{COLOURS[k % len(COLOURS)]}" stroke-width="1.5"'
             look += ' stroke-dasharray="5 3"' if line.dashed or k >= len(COLOURS) else ""
             path = self._path(line, bottom, levels[0], scale)
-            x, y = LEFT + _INNER + 10, top + 12 + _KEY_ROW * k
+            x, y = LEFT + COLUMNS + 10, top + 12 + _KEY_ROW * k
             parts += [
                 f'<path d="{path}" fill="none" stroke-linejoin="round" {look}/>',
                 f'<path d="M{x} {y}h18" {look}/>',
@@ -169,13 +171,13 @@ class SignalPlot:
         return "".join([*parts, "h0.1"]) if len(parts) == 1 else "".join(parts)
 
     def _x_of(self, times: Array) -> Array:
-        return LEFT + (times - self.first) / (self.last - self.first) * _INNER
+        return LEFT + (times - self.first) / (self.last - self.first) * COLUMNS
 
 
 def _thinned(line: Line) -> tuple[Array, Array]:
     """Return at most two points for each column of the picture."""
     # rounded up: a column of the picture has a bin of its own or a part of one
-    size = -(-len(line.x) // _INNER)
+    size = -(-len(line.x) // COLUMNS)
     if size <= 2:
         return line.x, line.y
     bins = -(-len(line.x) // size)

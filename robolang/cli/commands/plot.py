@@ -1,4 +1,7 @@
-"""``robolang plot RUN SIGNAL...``: signals of a log as curves over time, with the statements that ran."""
+"""``robolang plot RUN SIGNAL...``: signals of a log as curves over time, with the statements that ran.
+
+``robolang plot RUN --along-path``: the speed of the tool over the length of its path.
+"""
 
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated, ClassVar
@@ -15,8 +18,8 @@ if TYPE_CHECKING:
 _SUFFIXES = (".svg", ".png", ".html")
 
 Selections = Annotated[
-    list[str],
-    Argument("SIGNAL...", "Signals: q_fb, q_fb:2 for an axis, tool_cmd:z; q_cmd:2+q_fb:2 in one panel."),
+    list[str] | None,
+    Argument("[SIGNAL...]", "Signals: q_fb, q_fb:2 for an axis, tool_cmd:z; q_cmd:2+q_fb:2 in one panel."),
 ]
 
 
@@ -30,22 +33,23 @@ class _PlotOptions(Group):
     ] = None
     begin: Annotated[float | None, Option("--from", metavar="S", help="Start of the plot, s.")] = None
     end: Annotated[float | None, Option("--to", metavar="S", help="End of the plot, s.")] = None
+    along_path: Annotated[
+        bool, Option("--along-path", help="Draw the tool's speed over the length of its path, without SIGNAL.")
+    ] = False
 
 
 def plot(run: Run, selections: Selections, output: _PlotOptions) -> None:
     """Draw signals of a log: a panel for each, one time axis, the running statements marked.
 
-    Angles are drawn in deg, lengths in mm.
+    Angles are drawn in deg, lengths in mm. With --along-path: the programmed and the commanded speed of the tool.
 
     Example: robolang plot run.npz q_fb:2 tool_error -o run.svg
 
     Exit codes: 0 done; 2 the log, a signal or an option cannot be used; 4 the file cannot be written.
     """
-    if output.begin is not None and output.end is not None and not output.begin <= output.end:
-        raise OptionValueError("--from, --to", f"{output.begin:g} s is after {output.end:g} s")
-    path = output.out or _beside(run, selections)
-    if path.suffix not in _SUFFIXES:
-        raise OptionValueError("--out", f"'{path}' must end in {', '.join(_SUFFIXES)}")
+    names = selections or []
+    path = output.out or _beside(run, names or ["path"])
+    _check(output, names, path)
     with reported():
         from robolang.core.storage import write_atomic
 
@@ -55,19 +59,32 @@ def plot(run: Run, selections: Selections, output: _PlotOptions) -> None:
             from robolang.view.png import check_png
 
             check_png()
-        data = _drawn(_plot(run, selections, output), path.suffix)
+        data = _drawn(_plot(run, names, output), path.suffix)
         write_atomic(path, lambda stream: stream.write(data))
         echo(f"{path} written")
+
+
+def _check(output: _PlotOptions, names: list[str], path: Path) -> None:
+    """Refuse options that do not go together."""
+    if output.begin is not None and output.end is not None and not output.begin <= output.end:
+        raise OptionValueError("--from, --to", f"{output.begin:g} s is after {output.end:g} s")
+    if output.along_path and names:
+        raise OptionValueError("--along-path", "draws the speed alone, without SIGNAL")
+    if not output.along_path and not names:
+        raise OptionValueError("SIGNAL", "at least one is needed, or --along-path")
+    if path.suffix not in _SUFFIXES:
+        raise OptionValueError("--out", f"'{path}' must end in {', '.join(_SUFFIXES)}")
 
 
 def _plot(run: Path, selections: list[str], output: _PlotOptions) -> "SignalPlot":
     from robolang.logs.files import read_log
     from robolang.view.log_plot import Window, plot_of
+    from robolang.view.path_plot import path_plot
 
-    log = read_log(run)
+    log, window = read_log(run), Window(first=output.begin, last=output.end)
     # refused as an option: the log itself is as it should be
     try:
-        return plot_of(log, selections, Window(first=output.begin, last=output.end))
+        return plot_of(log, selections, window) if selections else path_plot(log, window)
     except ValueError:
         times = log["t"]
         span = f"the log goes from {times[0]:g} to {times[-1]:g} s"

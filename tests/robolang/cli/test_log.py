@@ -47,7 +47,10 @@ def test_a_plot_is_written_in_each_format(tmp_path, suffix, begins):
 
 @pytest.mark.parametrize(
     ("words", "name"),
-    [(["q_fb"], "run-q_fb.svg"), (["q_cmd:2+q_fb:2", "parts:part.x"], "run-q_cmd2-q_fb2-partspart.x.svg")],
+    [
+        (["q_fb"], "run-q_fb.svg"),
+        (["q_cmd:2+q_fb:2", "parts:part.x"], "run-q_cmd2-q_fb2-partspart.x.svg"),
+    ],
 )
 @pytest.mark.usefixtures("run")
 def test_without_a_name_it_is_written_beside_the_log(tmp_path, words, name):
@@ -69,6 +72,9 @@ def test_the_window_is_that_of_the_options(tmp_path):
         (["run.npz", "nothing"], 2, {"RBL838"}),
         (["run.npz", "q_fb:9"], 2, {"RBL838", "q_fb"}),
         (["run.npz", "q_fb", "-o", "x.pdf"], 2, {"RBL703", "--out"}),
+        (["run.npz"], 2, {"RBL703", "SIGNAL", "--along-path"}),
+        (["run.npz", "q_fb", "--along-path"], 2, {"RBL703", "--along-path"}),
+        (["run.npz", "--along-path", "--from", "99"], 2, {"RBL703", "--from"}),
         (["run.npz", "q_fb", "--from", "99"], 2, {"RBL703", "--from"}),
         (["run.npz", "q_fb", "--from", "nan"], 2, {"RBL703", "--from"}),
         (["absent.npz", "q_fb"], 2, {"RBL600"}),
