@@ -103,8 +103,7 @@ def _between(effect: MoveTo, path: Path, low: float, high: float) -> MoveTo:
         return replace(effect, path="line", via=())
     if not isinstance(path, SplinePath):
         return replace(effect, via=(_place(path, (low + high) / 2.0),))
-    inner = path.points_within(low, high)
-    return replace(effect, via=tuple(_place(path, s) for s in inner))
+    return replace(effect, via=tuple(_place(path, s) for s in path.places_within(low, high)))
 
 
 def _parameter(path: Path, p: Array) -> float:

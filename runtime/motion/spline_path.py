@@ -27,8 +27,8 @@ _SAME_PLACE = 1e-6
 """Points nearer to one another, m, are at one place."""
 _SAME_TURN = 1e-6
 """Orientations that differ by less, rad, are one."""
-_PARTS = 4
-"""Parts of the curve between two points, of which what is left of it is made."""
+_PARTS, _MOST_PLACES = 8, 60
+"""Parts of the curve between two points, and places in all, of which what is left of it is made."""
 _BETWEEN = 32
 """Places between two points at which a curve is measured."""
 _NEAREST = 3
@@ -153,15 +153,19 @@ class SplinePath:
             u = np.clip(u + step, self.curve.knots[0], self.curve.knots[-1])
         return np.asarray(np.linalg.norm(points - self.curve.at(u)[0][:, :3], axis=1))
 
-    def points_within(self, low: float, high: float) -> list[float]:
-        """Return shares between two others, all of points and some between these, through which the curve is the same.
+    def places_within(self, low: float, high: float) -> list[float]:
+        """Return shares between two others through which a spline is nearly this curve: points, and some between these.
 
-        A spline through them differs from the curve by less than a hundredth of what it is from straight pieces.
+        Of a usual curve it differs by some thousandths of what that is from straight pieces.
         """
         ends = self.points_at
-        shares = (ends[:-1] + np.linspace(0.0, 1.0, _PARTS, endpoint=False)[:, None] * np.diff(ends)).T.ravel()
-        inner = shares[(shares > low) & (shares < high)].tolist()
-        return inner or [0.5 * (low + high)]
+        parts = max(1, min(_PARTS, _MOST_PLACES // (len(ends) - 1)))
+        shares = (ends[:-1] + np.linspace(0.0, 1.0, parts, endpoint=False)[:, None] * np.diff(ends)).T.ravel()
+        inner = shares[(shares > low) & (shares < high)]
+        # a program that is recorded has them in one line
+        even = np.linspace(low, high, _MOST_PLACES + 2)[1:-1]
+        found: list[float] = (inner if 0 < len(inner) <= _MOST_PLACES else even).tolist()
+        return found
 
     def swings(self) -> tuple[Swing, ...]:
         """Return how far the curve is from the straight line between each two points, in order."""

@@ -16,6 +16,7 @@ from runtime.motion.wrist.hold import frames_along
 from tests.runtime.motion.motions import ROBOTS, TOOL, bench, limits_broken
 from tests.together import together
 
+S = np.linspace(0.0, 1.0, 201)
 DOUBLES_NOT_BACK = (0, 1, 2, 4, 6, 8, 9, 10)
 """Seeds of curves whose share is that of their length all along."""
 
@@ -213,6 +214,17 @@ def test_the_distance_from_a_closed_curve_is_that_of_its_nearest_part():
     path = at_places(places)
     points = path.points(np.linspace(0.0, 1.0, 997)) + [0.0, 0.0, 1e-4]
     np.testing.assert_allclose(path.deviation(points), 1e-4, rtol=1e-6)
+
+
+@together("cut", [(0.1, 1.0), (0.37, 1.0), (0.99, 1.0), (0.0, 0.3), (0.0, 0.7)])
+def test_what_is_left_of_a_curve_is_that_curve(cut):
+    angles = np.linspace(0.0, 3.5, 9)
+    path = at_places(np.stack([0.1 * np.cos(angles), 0.1 * np.sin(angles), 0.01 * angles], axis=1))
+    shares = path.places_within(*cut)
+    assert 0 < len(shares) <= 60
+    assert cut[0] < min(shares) and max(shares) < cut[1]
+    rest = spline(list(path.poses(np.array([cut[0], *shares, cut[1]]))))
+    assert path.deviation(rest.points(S)).max() < 2e-6
 
 
 def planned(name: str, shape: str = "jerk", override: float = 1.0, turn: float = 0.3, size: float = 1.0, **options):
