@@ -11,6 +11,7 @@ from typing import Any, Literal
 import numpy as np
 
 from robolang.view.packing import Signal
+from robolang.view.programmed import NAME
 from runtime.core.units import DEG, MM, PERCENT
 
 Role = Literal["value", "command", "limit", "step"]
@@ -157,7 +158,10 @@ def _tool_error(shown: Shown) -> Chart | None:
 
 
 def _tool_speed(shown: Shown) -> Chart | None:
-    return _one(shown, "tool_speed", _TOOL_SPEED, 1.0 / MM)
+    found = _one(shown, "tool_speed", _TOOL_SPEED, 1.0 / MM)
+    if found is None or NAME not in shown.signals:
+        return found
+    return replace(found, series=(*found.series, Series(label="programmed", signal=NAME, scale=1.0 / MM, role="step")))
 
 
 def _each(kind: Kind, signal: str, scale: float, role: Role = "value", label: str = "") -> tuple[Series, ...]:

@@ -5,13 +5,11 @@ the work piece, and a wait has no length. A tool that is exchanged moves its poi
 many rows in a column of the picture the least and the largest are drawn.
 """
 
-from collections.abc import Mapping, Sequence
-from typing import Any
-
 import numpy as np
 
 from robolang.logs.log import Log
 from robolang.view.log_plot import MOVED, Window, blocks_of, numbered, rows_of, title_of
+from robolang.view.programmed import programmed_speeds
 from robolang.view.signal_plot import COLUMNS, Line, SignalPanel, SignalPlot
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
@@ -79,13 +77,7 @@ def _curve(name: str, x: Array, y: Array) -> Line:
 
 def _programmed(log: Log, times: Array, x: Array) -> list[Line]:
     """Return the programmed speed as steps, without a value where none is programmed; none for a log without it."""
-    statements: Sequence[Mapping[str, Any]] = [] if log.meta is None else log.meta["report"].get("statements", ())
-    speeds = np.full(len(times), np.nan)
-    for each in statements:
-        # a move that was not begun has no start, and a joint move no speed along a path
-        if each.get("programmed_mm_s") is not None and each["start_s"] is not None:
-            first, last = np.searchsorted(times, [each["start_s"], each["start_s"] + each["duration_s"]])
-            speeds[first:last] = each["programmed_mm_s"]
+    speeds = programmed_speeds(() if log.meta is None else log.meta["report"].get("statements", ()), times) / MM
     if not np.isfinite(speeds).any():
         return []
     places = np.linspace(x[0], x[-1], 2 * COLUMNS)

@@ -13,6 +13,7 @@ from robolang.core.diagnostics import Diagnostic, has_errors
 from robolang.execution.dry_run import Rehearsal
 from robolang.execution.findings import file_name, of_diagnostic, of_doubt
 from robolang.execution.log_meta import point_poses, robot_of
+from robolang.execution.speed_keys import speed_keys
 from robolang.planning.placed import Placed
 from robolang.project.project import Project
 from robolang.syntax.unparse import describe
@@ -20,6 +21,7 @@ from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
 from robolang.view.plan_parts import parts_of
 from robolang.view.plan_rows import PlanRows
+from robolang.view.programmed import programmed_signal
 from robolang.view.run_signals import drawn_off
 from robolang.view.thinning import evenly, paired, thinned
 from runtime.appearance.cell_scene import scene_of
@@ -38,7 +40,8 @@ def pack_plan(
     cycle_s, robot, label = project.profile.period_s, _robot(project), file_name(project.source.path)
     rows = PlanRows(project, rehearsal)
     q, made = rows.q, Signals(rows, rehearsal.kinematics.chain)
-    shown = (*_signals(made, q, cycle_s), *parts_of(project, rehearsal, q))
+    programmed = programmed_signal(_moves(rehearsal), len(q), cycle_s)
+    shown = (*_signals(made, q, cycle_s), *programmed, *parts_of(project, rehearsal, q))
     signals = {signal.name: signal for signal in shown}
     header = {
         "kind": "plan",
@@ -59,6 +62,13 @@ def pack_plan(
         "joints": [asdict(joint) for joint in joints.ranges(robot["axes"], [q], cycle_s)],
     }
     return pack(header, list(signals.values()))
+
+
+def _moves(rehearsal: Rehearsal) -> Iterator[dict[str, Any]]:
+    """Yield times and speeds of the moves, as a report has them."""
+    for move in rehearsal.moves:
+        times = {"start_s": move.begins_us / 1e6, "duration_s": (move.ends_us - move.begins_us) / 1e6}
+        yield {**times, **speed_keys(move.speeds.moves[move.number])}
 
 
 def _signals(made: Signals, q: Array, cycle_s: float) -> Iterator[Signal]:

@@ -1,7 +1,7 @@
 """What a page holds of a run: its signals, its charts, notes and joints, and what the log says of it, packed."""
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict
 from itertools import pairwise
 from pathlib import Path
@@ -13,6 +13,7 @@ from robolang.logs.files import read_log
 from robolang.logs.log import Log, Meta
 from robolang.view import charts, joints, notes
 from robolang.view.packing import Signal, pack
+from robolang.view.programmed import programmed_signal
 from robolang.view.run_signals import drawn_off, in_pieces, signals_of
 from robolang.view.thinning import paired, thinned
 from runtime.appearance.scene import Scene
@@ -61,10 +62,14 @@ def _shape(robot: Mapping[str, Any]) -> object:
     return robot["name"], [(axis["name"], axis["kind"]) for axis in robot["axes"]]
 
 
+def _programmed(log: Log, meta: Meta, cycle_s: float) -> Iterator[Signal]:
+    return programmed_signal(meta["report"]["statements"], log.count("t") // log.rows.ticks_per_cycle, cycle_s)
+
+
 def _packed(log: Log, meta: Meta, label: str) -> bytes:
     robot, tick_s, cycle_s = meta["robot"], float(meta["tick_s"]), float(meta["cycle_s"])
     names, levels = _levels(log, cycle_s)
-    signals = {signal.name: signal for signal in (*signals_of(log, robot), *levels)}
+    signals = {signal.name: signal for signal in (*signals_of(log, robot), *levels, *_programmed(log, meta, cycle_s))}
     if not log.count("t"):
         signals.update(_standing(meta, tick_s))
     shown = charts.Shown(robot=robot, signals=signals, levels=names)

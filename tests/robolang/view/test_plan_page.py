@@ -63,6 +63,11 @@ def test_a_plan_has_the_charts_of_a_plan_against_limits():
         ]
         assert 20.0 < max(peaks) <= 101.0
     assert max(found["tool_speed"][0]) == pytest.approx(0.5, abs=0.01)
+    (chart,) = [each for each in header["charts"] if each["id"] == "tool_speed"]
+    assert [each["signal"] for each in chart["series"]] == ["tool_speed", "programmed_speed"]
+    programmed = np.array(found["programmed_speed"][0], dtype=float)
+    assert np.unique(np.round(programmed[np.isfinite(programmed)], 4)).tolist() == [0.5]
+    assert 0.3 < np.isfinite(programmed).mean() < 1.0
     assert header["duration_s"] == pytest.approx(5.296)
 
 
