@@ -72,7 +72,11 @@ class Speeds:
     def moves(self) -> tuple[Reached, ...]:
         """What became of the speed of each move."""
         extents = self.times.extents.tolist()
-        return tuple(self._judged(k) if extent > 0.0 else _nothing() for k, extent in enumerate(extents))
+        found = tuple(self._judged(k) if extent > 0.0 else _nothing() for k, extent in enumerate(extents))
+        # a long run keeps the speeds of every chain, and needs no more than what was found
+        for measured in ("_use", "_valleys"):
+            self.__dict__.pop(measured, None)
+        return found
 
     @cached_property
     def slowed(self) -> Mapping[int, tuple[int, ...]]:
@@ -306,7 +310,9 @@ class Speeds:
             return corner
         # slowed for its curvature as a whole, it takes little of its acceleration anywhere
         if self._curved(k):
-            return self._reason(k, at).of(Limit(kind="radius", share=float(use.across[at])))
+            span = self.times.spans[k]
+            tightest = span.first + int(np.argmax(use.across[span.first : span.last]))
+            return self._reason(k, tightest).of(Limit(kind="radius", share=float(use.across[tightest])))
         found = self._anywhere(k)
         # the end of a ramp, where nothing takes much any more
         return found if found.share >= _HALF else self._short(k, ())

@@ -8,7 +8,7 @@ import pytest
 from runtime.core.frames import pose, rotation_about
 from runtime.core.units import DEG
 from runtime.motion.chain.timing import Limits
-from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
+from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear, MoveSpline
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.move_times import SLOWED
 from runtime.motion.reached import Reached
@@ -67,6 +67,13 @@ def tiny_arc() -> list[Command]:
     return [MoveArc(X_via=via, X_world_tool=end, speed=0.4)]
 
 
+def wave() -> list[Command]:
+    X = bench("puma560").tool(BENT)
+    places = [(0.0, 0.03 * (k + 1), 0.01 * (-1) ** k) for k in range(4)]
+    *through, end = (pose(X[:3, 3] + np.array(by), X[:3, :3]) for by in places)
+    return [MoveSpline(X_through=tuple(through), X_world_tool=end, speed=0.6)]
+
+
 SLOW = {
     "a joint, fast beside a singularity": (straight_wrist(), {"start": STRAIGHT}, 0, "joint"),
     "the same under an override": (straight_wrist(override=0.5), {"start": STRAIGHT, "override": 0.8}, 0, "joint"),
@@ -81,6 +88,7 @@ SLOW = {
     "a corner in a tiny zone": (zigzag(0.0003), {}, 2, "corner"),
     "a line between two stops": ([line((0.02, 0.0, 0.0), speed=0.5)], {}, 0, "length"),
     "a line that hardly moves": ([line((0.0005, 0.0, 0.0), speed=0.5)], {}, 0, "length"),
+    "a spline that bends": (wave(), {}, 0, "radius"),
     "a tiny arc": (tiny_arc(), {}, 0, "radius"),
     "a joint move between two stops": ([MoveJoint(q_end=BENT + 5.0 * DEG)], {}, 0, "length"),
     "a TIME that is too short": ([line((0.0, 0.1, 0.0), duration=0.3)], {}, 0, "length"),
