@@ -3,7 +3,7 @@
 Each chain of ``tests.runtime.motion.chains`` runs on a controller with the ideal arm up to a random cycle, where it is
 paused, or stopped by an alarm of category 1. Judged is the log, without the code of the stop:
 
-limits   speed, acceleration and, with ``JERK_HELD``, jerk of every joint at every moment of the stop
+limits   speed and acceleration of every joint at every moment of the stop; a stop is as short as these allow
 range    every joint within its range
 curve    at every cycle the tool is where it would have been at some moment, had the motion gone on
 path     it is on the path of its move, or in a zone of that

@@ -31,8 +31,8 @@ HOME = {"ur5e": np.radians([0.0, -80.0, 100.0, -110.0, -90.0, 0.0])}
 """Where the arm is not folded and the wrist is bent, for a robot whose ranges hold many such regions."""
 ON_PATH_M = 1e-9
 """A tool point nearer to a path, m, is on it."""
-AT_REST_M = 1e-7
-"""The same a cycle before a stop, and after it: the command then is on the line from one set-point to another."""
+AT_REST_M = 1e-6
+"""The same in the first and the last cycle: the command there is on the line between two set-points, beside an arc."""
 SLACK = 1.0 + 1e-9
 KINDS = ("fault", "limits", "range", "zone", "stop", "time")
 ZONES = ((0.0, 0.0), (5e-4, 5e-3), (5e-3, 0.03), (0.3, 0.3))
@@ -155,7 +155,7 @@ def broken(robot: Bench, run: Chain, found: ChainPlan) -> Counter[str]:
     ends = np.isin(np.arange(len(knots)), (0, len(knots) - 1))
     at_end = robot.tool(setpoints[-1:])[0, :3, 3] - target(robot, run, len(run.commands) - 1)
     return Counter(
-        limits=int(not worst_share(robot, setpoints) <= SLACK),
+        limits=int(not worst_share(robot, setpoints, jerk=JERK_HELD) <= SLACK),
         range=int(not ((setpoints >= spec.lower - 1e-8) & (setpoints <= spec.upper + 1e-8)).all()),
         zone=int(
             not off_path(robot, run, points[~ends], found.command[~ends]) <= ON_PATH_M
@@ -189,10 +189,10 @@ def spline(setpoints: Array, u: Array) -> Array:
     return np.asarray(sum(c[:, None, p] * (u**p)[None, :, None] for p in range(4)))
 
 
-def worst_share(robot: Bench, setpoints: Array, sent: int = 0) -> float:
+def worst_share(robot: Bench, setpoints: Array, sent: int = 0, *, jerk: bool = False) -> float:
     """Return the largest share of a limit of a joint that a command from rest to rest takes, at any moment.
 
-    ``sent`` set-points before are not judged: their differences are those of a motion before.
+    ``sent`` set-points before are not judged: their differences are those of a motion before. ``jerk``: it is judged.
     """
     h = robot.profile.period_s
     c = polynomials(around(setpoints))[sent:]
@@ -202,7 +202,7 @@ def worst_share(robot: Bench, setpoints: Array, sent: int = 0) -> float:
     speeds = [np.abs(c[:, 1] + 2.0 * c[:, 2] * u + 3.0 * c[:, 3] * u**2) / h for u in (0.0, 1.0, turning)]
     gains = [np.abs(2.0 * c[:, 2] + 6.0 * c[:, 3] * u) / h**2 for u in (0.0, 1.0)]
     shares = [np.max(speeds, axis=0) / robot.speed, np.max(gains, axis=0) / robot.acceleration]
-    if JERK_HELD:
+    if jerk:
         shares.append(np.abs(6.0 * c[:, 3]) / h**3 / robot.spec.per_axis("limits", "jerk"))
     return float(np.max([share.max() for share in shares]))
 
