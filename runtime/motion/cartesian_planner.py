@@ -4,7 +4,7 @@ The path, a line, an arc or a spline, is sampled where the interpolator will sen
 joints: in the arm configuration it starts in, with the wrist leaving the posture of the path where it has to
 (``wrist_planner``).
 It is refused when a sample is out of reach (RBL410), outside a joint's range (RBL411) or cannot be passed (RBL412), and
-slowed as a whole until every joint keeps its limits (``time_scaling``). What was checked is what runs: the interpolator
+slowed where a joint would pass a limit (``single``). What was checked is what runs: the interpolator
 hands out these very rows (docs/decisions/0002).
 
 On an arc of radius r the tool point is accelerated towards the centre as well, by v^2 / r; of a spline r is the
@@ -23,7 +23,7 @@ a program that is tested at a low speed passes through the same points as later.
 import math
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -33,15 +33,17 @@ from runtime.core.frames import Array, frozen
 from runtime.core.limits import ACCEL, SPEED, TIME
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
+from runtime.motion.chain.paced import ChainLimits
 from runtime.motion.chain.piece import Piece, extent_of
-from runtime.motion.commands import Component, MoveArc, MoveLinear, MoveSpline, PathMove
+from runtime.motion.commands import MAX, Component, MoveArc, MoveLinear, MoveSpline, PathMove
 from runtime.motion.fine_interpolator import through
 from runtime.motion.half_turn import in_order
-from runtime.motion.path import ArcPath, LinePath, Path
+from runtime.motion.path import NOTHING_TO_DO, ArcPath, LinePath, Path
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import CalculatedMove, SeamMove, SeamTracker
+from runtime.motion.single import Slowdown, single
 from runtime.motion.spline_path import SplinePath
-from runtime.motion.time_scaling import Pace, Slowdown
+from runtime.motion.time_scaling import Pace
 from runtime.motion.velocity_profile import SpeedLimits, bound, profile
 from runtime.motion.wrist.switch import CONDITIONS, SAME_ANGLES, Condition, PathTiming
 from runtime.motion.wrist_planner import choose, explained
@@ -57,9 +59,6 @@ FOLLOWS, EXCEPTION, HELD = 0, 1, 2
 
 MOST_SAMPLES = 2000
 """A move through the wrist is chosen on at most so many samples: at 8 ms, moves of 16 s and less on all of theirs."""
-
-NOTHING_TO_DO = 1e-9
-"""A move of less, m and rad, ends where it starts: it gets no rows."""
 
 ACROSS = 0.8
 """Largest share of the path's acceleration that an arc may take to turn the speed; sqrt(1 - 0.8^2) = 0.6 are then left
@@ -93,8 +92,8 @@ class MovePlan:
     """A planned move: joint angles ``q`` (N + 1, n) rad that it passes, from the start to the end, 8 ms apart.
 
     ``path`` of the tool point, None for a joint move; ``s`` (N + 1,) path parameter of each row. ``slowdown`` None when
-    the move runs as programmed, ``wrist`` None when the tool keeps the posture of the path, ``notes`` for the report,
-    ``acceleration`` the programmed share of the robot's, ``override`` the share of all speeds.
+    the move runs as programmed, ``wrist`` None when the tool keeps the posture of the path, ``notes`` for the report;
+    ``piece`` is the move as a piece of a path, None where it has nothing to do.
     """
 
     path: Path | None
@@ -103,10 +102,17 @@ class MovePlan:
     slowdown: Slowdown | None
     wrist: WristChange | None = None
     notes: tuple[str, ...]
-    acceleration: float = 1.0
-    override: float = 1.0
-    duration_s: float | None = None
     piece: Piece | None = None
+
+    @property
+    def acceleration(self) -> float:
+        """The programmed share of the robot's accelerations."""
+        return 1.0 if self.piece is None else self.piece.acceleration
+
+    @property
+    def override(self) -> float:
+        """The share of all speeds."""
+        return 1.0 if self.piece is None else self.piece.override
 
     @property
     def setpoints(self) -> Array:
@@ -134,13 +140,15 @@ class MovePlan:
 class PathCurve:
     """The curve of a move along a path in joint space; ``limits`` of its path parameter, None: already there.
 
-    ``line`` keeps the posture of the path, ``choice`` is the curve that the move takes.
+    ``line`` keeps the posture of the path, ``choice`` is the curve that the move takes; the wrist has to ``turn`` by so
+    many rad where the tool keeps its pose.
     """
 
     path: Path
     line: LineSolver
     limits: SpeedLimits | None
     choice: Candidate
+    turn: float = 0.0
 
     def joints(self, s: Array) -> Array:
         """Return q (N, n) rad at path parameters s (N,); ``Fault`` RBL410, 411 or 412."""
@@ -166,6 +174,7 @@ class CartesianPlanner:
         self._kinematics = kinematics
         self._profile = profile
         self._pace = Pace.of(spec, profile)
+        self._limits = ChainLimits.of(spec, profile)
 
     def plan(self, q_start: Array, command: PathMove, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
         """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411, 412 or 416.
@@ -179,30 +188,36 @@ class CartesianPlanner:
         override *= command.override
         pace = self._pace.overridden(override)
         duration = None if command.duration is None else command.duration / override
+        s = profile(curve.limits.overridden(override), self._profile.period_s, duration)
+        solver = curve.choice.solver
         with curve.explaining():
-            s, q, slowdown = pace.within_limits(curve.choice.solver, curve.limits.overridden(override), duration)
+            q = solver.joints(s)
+            piece = Piece(
+                curve=solver,
+                path=curve.path,
+                extent=extent_of(curve.path, q[0], q[-1], self._kinematics),
+                limits=self._piece_limits(curve, command),
+                q_start=q[0],
+                q_end=q[-1],
+                acceleration=command.acceleration,
+                override=override,
+                duration_s=duration,
+            )
+            s, q, slowdown = single(solver, piece, (s, q), curve.line.arm, self._limits)
         wrist = _wrist_change(curve.choice, curve.line, s, q, command.held)
         notes = pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
         notes += _wrist_notes(wrist) + _kept_notes(command, q)
         return MovePlan(
-            path=curve.path,
-            s=frozen(s),
-            q=frozen(q),
-            slowdown=slowdown,
-            wrist=wrist,
-            notes=notes,
-            acceleration=command.acceleration,
-            override=override,
-            duration_s=duration,
-            piece=Piece(
-                curve=curve.choice.solver,
-                path=curve.path,
-                extent=extent_of(curve.path, q[0], q[-1], self._kinematics),
-                limits=curve.limits,
-                q_start=q[0],
-                q_end=q[-1],
-            ),
+            path=curve.path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes, piece=piece
         )
+
+    def _piece_limits(self, curve: PathCurve, command: PathMove) -> SpeedLimits:
+        """Return the bounds of the path parameter that a move runs with: under ``MAX`` those of its speeds alone."""
+        assert curve.limits is not None  # it has something to do
+        if command.acceleration < MAX:
+            return curve.limits
+        path = curve.path
+        return speed_limits(path, command, self._spec.path, self._profile, curve.turn)
 
     def curve(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> PathCurve:
         """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""
@@ -214,6 +229,8 @@ class CartesianPlanner:
         line, path = lines[0], lines[0].path
         if all(extent < NOTHING_TO_DO for extent in (path.length, path.angle, turn)):
             return PathCurve(path=path, line=line, limits=None, choice=Candidate(solver=line))
+        # also with ``ACCEL MAX`` it is checked, and goes through its wrist, as at the robot's accelerations
+        command = replace(command, acceleration=command.robot_share)
         limits = speed_limits(path, command, self._spec.path, self._profile, turn)
         if len(lines) > 1:
             lines = in_order(lines, profile(limits, self._profile.period_s, command.duration), command.q_end)
@@ -225,7 +242,7 @@ class CartesianPlanner:
             except Fault as fault:
                 refused.append(fault)
             else:
-                return PathCurve(path=line.path, line=line, limits=limits, choice=choice)
+                return PathCurve(path=line.path, line=line, limits=limits, choice=choice, turn=turn)
         raise refused[0]
 
     def _paths(self, X_start: Array, command: PathMove) -> tuple[Path, ...]:
@@ -363,7 +380,9 @@ def speed_limits(
 
     ``wrist_turn`` rad is how far the wrist has to turn, for a move whose tool stays where it is.
     """
-    ACCEL.checked(command.acceleration / PERCENT, ACCEL.high)
+    share = command.acceleration
+    if share != MAX:
+        ACCEL.checked(share / PERCENT, ACCEL.high)
     speed = robot.default_speed
     if command.duration is not None:
         # TIME rules alone: the speed is then only bounded by the robot, and the profile is stretched to the time
@@ -372,11 +391,10 @@ def speed_limits(
     elif command.speed is not None:
         speed = command.speed
         SPEED.checked(speed / MM, robot.max_speed / MM)
-    share = command.acceleration
     acceleration, jerk = robot.acceleration * share, robot.jerk * share
-    if not isinstance(path, LinePath):
+    if not isinstance(path, LinePath) and share < MAX:
         speed, acceleration = arc_limits(speed, acceleration, jerk, path.radius)
-    if isinstance(path, SplinePath):
+    if isinstance(path, SplinePath) and share < MAX:
         speed = min(speed, path.turning_speed(ACROSS * robot.rotation_acceleration * share))
     position = (path.length, speed, acceleration, jerk)
     turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)

@@ -4,7 +4,6 @@ A row of moves is cut where the arm stops: where a zone is 0, or leaves no room.
 ``ChainPath``; a move between two stops runs as it was planned. Called by ``MotionPlanner.join``; m, rad, s.
 """
 
-import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
@@ -14,32 +13,14 @@ from numpy.typing import NDArray
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import MovePlan
-from runtime.motion.chain.chain_path import ChainPath, ToolLimits
+from runtime.motion.chain.chain_path import ChainPath
 from runtime.motion.chain.corner import Corner, Rounding, roundings, woven
+from runtime.motion.chain.paced import ChainLimits, paced
 from runtime.motion.chain.piece import Piece
-from runtime.motion.chain.timing import Limits, Path, Timed, timed
 from runtime.motion.path_ik import Arm
-from runtime.motion.speed_cap import PLANNED, SpeedCap
-from runtime.robot.model.drives import PathLimits
 
-_TIMES = 8
-"""Timings of a path until its moves take the TIMEs that are programmed, and keep to a cap."""
 _AROUND = np.linspace(-1.0, 1.0, 33)
 """Places of a corner, by its half, at which its distance from the programmed one is taken."""
-_FIRMLY = 1.0 + 1e-4
-
-
-@dataclass(frozen=True, slots=True, kw_only=True)
-class ChainLimits:
-    """What a chain of one robot keeps to: ``joints``, the ``path`` limits of the tool, a ``cap`` on its speed.
-
-    ``mean_s``: the time in which accelerations build up, 0 without a limit of jerk.
-    """
-
-    joints: Limits
-    path: PathLimits
-    mean_s: float
-    cap: SpeedCap | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -111,7 +92,7 @@ def _runs(
         return alone
     path = ChainPath(arm, [_piece(plan) for plan in plans], woven([_piece(plan) for plan in plans], rounded, arm))
     try:
-        found = _timed(path, plans, limits)
+        found = paced(path, limits)
     except Fault:
         return alone
     if len(found.x) - 1 > sum(len(plan.q) - 1 for plan in plans):
@@ -149,56 +130,6 @@ def _with_zones(plans: Sequence[MovePlan], zones: Sequence[float]) -> Iterator[t
 def _piece(plan: MovePlan) -> Piece:
     assert plan.piece is not None
     return plan.piece
-
-
-def _timed(path: ChainPath, plans: Sequence[MovePlan], limits: ChainLimits) -> Timed:
-    """Return a path timed with the speeds, overrides and TIMEs of its moves; ``Fault`` RBL404 where it keeps no cap."""
-    number = path.move_at(path.x)
-    overrides = np.array([plan.override for plan in plans])
-    tool = _tool_limits(plans, limits, number)
-    bounds = path.bounds((limits.joints.speed, limits.joints.acceleration), tool, overrides)
-    slower, under = np.ones(len(plans)), 1.0
-    for _ in range(_TIMES):
-        fastest = np.minimum(bounds.fastest, _under_cap(path, limits.cap, under)) * slower[number] ** 2
-        found = timed(Path(x=path.x, bounds=bounds.replaced(fastest), joints=path.joints), limits.joints, limits.mean_s)
-        factor = _too_quick(path, plans, found.x, limits.joints.period_s)
-        over = 1.0 if limits.cap is None else limits.cap.ratio(limits.cap.fine.expand(found.setpoints))
-        if over <= 1.0 and not (factor < 1.0).any():
-            return found
-        slower *= factor
-        # between two points of the grid the tool may be a little faster than at both
-        under /= over * _FIRMLY if over > 1.0 else 1.0
-    # a TIME that is missed is found by ``plan_findings``; a cap is for the people beside the arm
-    if not over <= 1.0:
-        raise Fault("RBL404", "no timing of the moves keeps below the cap of MANUAL")
-    return found
-
-
-def _tool_limits(plans: Sequence[MovePlan], limits: ChainLimits, number: NDArray[np.intp]) -> ToolLimits:
-    """Return what the tool keeps to at points that belong to moves ``number`` (M + 1,): on joint moves only a cap."""
-    along = np.array([plan.path is not None for plan in plans])
-    share = np.array([plan.acceleration for plan in plans])
-    most = np.where(along, limits.path.acceleration * share, math.inf)
-    if limits.cap is not None:
-        most = np.minimum(most, limits.cap.gained)
-    turning = np.where(along, limits.path.rotation_acceleration * share, math.inf)
-    return ToolLimits(acceleration=most[number], turning=turning[number])
-
-
-def _too_quick(path: ChainPath, plans: Sequence[MovePlan], x: Array, period_s: float) -> Array:
-    """Return the share (K,) of its speed at which each move takes its TIME, 1 where it takes as long already."""
-    cycles = np.interp(path.ends, x, np.arange(len(x)))
-    lasts = np.diff(cycles) * period_s
-    wanted = np.array([0.0 if plan.duration_s is None else plan.duration_s for plan in plans])
-    # a cycle is as near as a motion in whole cycles can come
-    return np.where(lasts < wanted - period_s, lasts / np.maximum(wanted, period_s), 1.0)
-
-
-def _under_cap(path: ChainPath, cap: SpeedCap | None, share: float) -> Array | float:
-    """Return the largest b (M + 1,) at which tool point and flange keep to a share of a cap."""
-    if cap is None:
-        return math.inf
-    return np.asarray((share * cap.most * PLANNED / np.maximum(path.speeds(), 1e-9)) ** 2)
 
 
 def _corners(path: ChainPath, zones: Sequence[float], x: Array) -> tuple[Corner, ...]:

@@ -20,14 +20,17 @@ from runtime.robot.kinematics.opw import Branch
 Component = Literal["TILT", "ADVANCE", "ROTATION"]
 """The tool's posture: about the direction of travel, across it and upright (``runtime.motion.wrist.hold``)."""
 
+MAX = math.inf
+"""The ``acceleration`` of a move that the limits of the joints alone bound."""
+
 Wrist = Literal["auto", "keep"]
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Motion:
-    """The options of every move. ``acceleration`` is a share of the robot's in (0, 1]; ``speed`` None: its default.
+    """The options of every move. ``acceleration`` is a share of the robot's in (0, 1], or ``MAX``.
 
-    ``override`` in (0, 1] is a share of every speed, those of the limits included
+    ``speed`` None is that of the robot. ``override`` in (0, 1] is a share of every speed, those of the limits included
     (``runtime.motion.cartesian_planner``).
     """
 
@@ -39,6 +42,11 @@ class Motion:
     turns: tuple[int, ...] = ()
     zone: float = 0.0
     override: float = 1.0
+
+    @property
+    def robot_share(self) -> float:
+        """The share of the robot's accelerations: all of them under ``MAX``."""
+        return 1.0 if self.acceleration == MAX else self.acceleration
 
     def __post_init__(self) -> None:
         # SPEED, ACCEL and TIME come from programs and are refused with their place (``limits``); these two are

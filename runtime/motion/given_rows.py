@@ -1,6 +1,6 @@
 """Joint set-points that are given instead of planned: whether an arm may be sent them, one every 8 ms.
 
-They are held to what a plan is held to (``time_scaling``, ``path_ik.check_range``): at every servo tick that fine
+They are held to what a plan is held to (``single``, ``path_ik.check_range``): at every servo tick that fine
 interpolation makes of them, from those that are already sent until the command stands at the last one, each joint is
 within its range and below its speed and acceleration. Called by the controller before anything moves; rad, s.
 """
@@ -18,7 +18,7 @@ _BETWEEN = 5e-6
 """How far past a limit the command may be between set-points that keep it, rad (0.0003 deg)."""
 
 _SLACK = 1.0 + 1e-6
-"""A planner leaves its moves the same share of rounding (``time_scaling``)."""
+"""A planner leaves its moves the same share of rounding (``timing``)."""
 
 
 def as_rows(spec: RobotSpec, rows: Array) -> Array:

@@ -26,16 +26,18 @@ from runtime.core.frames import Array, frozen, inverse
 from runtime.core.limits import ACCEL, SPEED_PCT, TIME
 from runtime.core.linear import matmul
 from runtime.core.units import MM, PERCENT
-from runtime.motion.cartesian_planner import NOTHING_TO_DO, MovePlan
+from runtime.motion.cartesian_planner import MovePlan
+from runtime.motion.chain.paced import ChainLimits
 from runtime.motion.chain.piece import JointLine as JointSpan
 from runtime.motion.chain.piece import Piece, extent_of
 from runtime.motion.commands import MoveJoint
+from runtime.motion.path import NOTHING_TO_DO
 from runtime.motion.path_ik import RANGE_TOLERANCE, Arm, check_range, few_axes
+from runtime.motion.single import single
 from runtime.motion.taught_end import as_taught, turned
 from runtime.motion.time_scaling import Pace
-from runtime.motion.velocity_profile import SpeedLimits, bound
+from runtime.motion.velocity_profile import SpeedLimits, bound, profile
 from runtime.robot.kinematics.kinematics import LIMIT_ROUNDING, Kinematics, Solution
-from runtime.robot.model.drives import RISE_S
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 
@@ -71,6 +73,7 @@ class JointPlanner:
     def __init__(self, spec: RobotSpec, kinematics: Kinematics, profile: Profile) -> None:
         self._spec, self._kinematics, self._profile = spec, kinematics, profile
         self._pace = Pace.of(spec, profile)
+        self._chain_limits = ChainLimits.of(spec, profile)
 
     def plan(self, q_start: Array, command: MoveJoint, X_flange_tool: Array, override: float = 1.0) -> MovePlan:
         """Return the plan of a move from joint angles q_start (n,) rad; ``Fault`` RBL404, 410, 411 or 412.
@@ -87,28 +90,24 @@ class JointPlanner:
         pace = self._pace.overridden(override)
         duration = None if command.duration is None else command.duration / override
         arm = Arm(spec=self._spec, kinematics=self._kinematics, fine=pace.fine, X_flange_tool=X_flange_tool)
-        curve, limits = JointLine(arm, q_start, q_end), self._limits(turns, share, command.acceleration)
-        limits = limits.overridden(override)
-        s, q, slowdown = pace.within_limits(curve, limits, duration)
-        notes = pace.time_note(duration, len(s) - 1)
-        return MovePlan(
+        limits = self._limits(turns, share, command.robot_share)
+        s = profile(limits.overridden(override), self._profile.period_s, duration)
+        curve = JointLine(arm, q_start, q_end)
+        q = curve.joints(s)
+        piece = Piece(
+            curve=JointSpan(q[0], q[-1]),
             path=None,
-            s=frozen(s),
-            q=frozen(q),
-            slowdown=slowdown,
-            notes=notes,
-            acceleration=command.acceleration,
+            extent=extent_of(None, q[0], q[-1], self._kinematics),
+            limits=limits,
+            q_start=q[0],
+            q_end=q[-1],
+            acceleration=command.robot_share,
             override=override,
             duration_s=duration,
-            piece=Piece(
-                curve=JointSpan(q[0], q[-1]),
-                path=None,
-                extent=extent_of(None, q[0], q[-1], self._kinematics),
-                limits=self._limits(turns, share, command.acceleration),
-                q_start=q[0],
-                q_end=q[-1],
-            ),
         )
+        s, q, slowdown = single(curve, piece, (s, q), arm, self._chain_limits)
+        notes = pace.time_note(duration, len(s) - 1)
+        return MovePlan(path=None, s=frozen(s), q=frozen(q), slowdown=slowdown, notes=notes, piece=piece)
 
     def end(self, q_start: Array, command: MoveJoint, X_flange_tool: Array) -> Array:
         """Return the joint angles (n,) at which a move from q_start (n,) ends; ``Fault`` RBL410, 411 or 412."""
@@ -161,8 +160,8 @@ class JointPlanner:
 
     def _limits(self, turns: Array, speed: float, acceleration: float) -> SpeedLimits:
         """Return the bounds of s for joints that turn by ``turns`` (n,) rad, at shares of their limits."""
-        most = self._pace.acceleration * acceleration
-        each = np.stack([turns, self._pace.speed * speed, most, most / RISE_S], axis=1)
+        most, jerk = self._pace.acceleration * acceleration, self._pace.jerk * acceleration
+        each = np.stack([turns, self._pace.speed * speed, most, jerk], axis=1)
         return bound([(d, v, a, j) for d, v, a, j in each.tolist()], self._profile.speed_shape)
 
 
@@ -195,7 +194,7 @@ def changed(kinematics: Kinematics, q_start: Array, q_end: Array, command: MoveJ
 
 def _share(command: MoveJoint) -> float:
     """Return the programmed share of the joints' speeds, 1 with TIME; ``Fault`` RBL404 outside (0, 1]."""
-    ACCEL.checked(command.acceleration / PERCENT, ACCEL.high)
+    ACCEL.checked(command.robot_share / PERCENT, ACCEL.high)
     if command.duration is not None:
         TIME.checked(command.duration)
         return 1.0

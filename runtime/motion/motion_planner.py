@@ -23,8 +23,8 @@ from runtime.core.frames import Array, frozen
 from runtime.core.units import MM, PERCENT
 from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, WristChange
 from runtime.motion.chain.corner import Corner
-from runtime.motion.chain.timing import Limits
-from runtime.motion.chaining import ChainLimits, Joined, joined
+from runtime.motion.chain.paced import ChainLimits
+from runtime.motion.chaining import Joined, joined
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
 from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.path import Path
@@ -32,7 +32,6 @@ from runtime.motion.path_ik import Arm
 from runtime.motion.speed_cap import PLANNED, SpeedCap
 from runtime.motion.time_scaling import Pace
 from runtime.robot.kinematics.kinematics import Kinematics
-from runtime.robot.model.drives import RISE_S
 from runtime.robot.model.spec import RobotSpec
 from runtime.settings.profile import Profile
 
@@ -141,7 +140,7 @@ class MotionPlanner:
         """The kinematics of the robot, one for all who plan with this."""
         self._spec = spec
         self._pace = Pace.of(spec, profile)
-        self._limits = _limits(spec, profile)
+        self._limits = ChainLimits.of(spec, profile)
 
     @property
     def spec(self) -> RobotSpec:
@@ -209,8 +208,9 @@ class MotionPlanner:
         if isinstance(command, MoveJoint):
             easing = cap.easing(cap.fine.expand(plan.setpoints))
         else:
-            easing = cap.gaining(self._spec.path.acceleration * command.acceleration)
-        return command if easing == 1.0 else replace(command, acceleration=command.acceleration * easing)
+            easing = cap.gaining(self._spec.path.acceleration * command.robot_share)
+        share = command.robot_share * easing
+        return command if share == command.acceleration else replace(command, acceleration=share)
 
     def chain(
         self,
@@ -262,21 +262,3 @@ def _shares(found: Joined, index: int, first: int, last: int) -> Array:
     own = found.share[first : last + 1].copy()
     own[found.command[first : last + 1] != index] = 0.0
     return frozen(own)
-
-
-def _limits(spec: RobotSpec, profile: Profile) -> ChainLimits:
-    """Return what chains of a robot keep to; without a limit of jerk under the speed shape ``trapezoid``."""
-    acceleration, path = spec.per_axis("limits", "acceleration"), spec.path
-    limited = profile.speed_shape == "jerk"
-    rises = (RISE_S, path.acceleration / path.jerk, path.rotation_acceleration / path.rotation_jerk)
-    return ChainLimits(
-        joints=Limits(
-            speed=spec.per_axis("limits", "speed"),
-            acceleration=acceleration,
-            jerk=np.full(spec.n, np.inf),
-            period_s=profile.period_s,
-        ),
-        path=path,
-        mean_s=0.5 * max(rises) if limited else 0.0,
-        cap=None,
-    )

@@ -51,6 +51,9 @@ from runtime.core.units import MM
 from runtime.motion.spline_path import SplinePath
 from runtime.settings.profile import PostureLaw
 
+NOTHING_TO_DO = 1e-9
+"""A move of less, m and rad, ends where it starts: it gets no rows."""
+
 FLATTEST = 1e-6
 """Least height of the triangle of start, via point and end over its longest side, m."""
 

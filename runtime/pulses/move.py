@@ -31,7 +31,7 @@ from runtime.pulses.steps import EqualTimeSteps
 MOST_PULSES = 2**53
 """A position further from zero is no exact float any more."""
 _ROUNDS = 12
-"""Profiles at most, as in ``time_scaling``."""
+"""Profiles at most. The factor is exact while the same limit rules at the same place of the curve."""
 _MARGIN = 1.0 + 1e-6
 """Share by which a profile is slowed beyond what was measured, so that rounding does not ask for another round."""
 _FITS = 0.995

@@ -12,7 +12,7 @@ import numpy as np
 from runtime.core.frames import Array, inverse
 from runtime.core.linear import matmul
 from runtime.core.units import badness
-from runtime.motion.path import Path
+from runtime.motion.path import NOTHING_TO_DO, Path
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.velocity_profile import SpeedLimits
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -36,7 +36,8 @@ class JointLine:
 class Piece:
     """A move: the ``curve`` of its joints, its ``path``, None for a joint move, ``extent`` m and ``limits`` of s.
 
-    ``q_start`` and ``q_end`` (n,) are where it begins and ends.
+    ``q_start`` and ``q_end`` (n,) are where it begins and ends; ``acceleration`` the programmed share of the robot's
+    (infinite: none holds along the path), ``override`` that of all speeds, ``duration_s`` the least time, s.
     """
 
     curve: LineSolver | WristSolver | JointLine
@@ -45,6 +46,9 @@ class Piece:
     limits: SpeedLimits
     q_start: Array
     q_end: Array
+    acceleration: float = 1.0
+    override: float = 1.0
+    duration_s: float | None = None
 
     @property
     def keeps_posture(self) -> bool:
@@ -82,7 +86,8 @@ def extent_of(path: Path | None, q_start: Array, q_end: Array, kinematics: Kinem
     turn = float(np.abs(q_end - q_start).max()) * ROOM
     if path is not None:
         # where the tool stays in place and keeps its posture, the wrist alone turns
-        return max(path.length, path.angle * ROOM, turn if path.length <= 0.0 else 0.0, key=badness)
+        stays = path.length < NOTHING_TO_DO and path.angle < NOTHING_TO_DO
+        return max(path.length, path.angle * ROOM, turn if stays else 0.0, key=badness)
     q = q_start + np.linspace(0.0, 1.0, 17)[:, None] * (q_end - q_start)
     flange = kinematics.forward(q)[:, :3, 3]
     return max(float(np.linalg.norm(np.diff(flange, axis=0), axis=1).sum()), turn, key=badness)

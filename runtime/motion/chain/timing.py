@@ -9,8 +9,8 @@ r"""Timing a path: as fast as its bounds allow at every place, within the limits
 So a limit that binds at one place slows the motion there and nowhere else. What is left after ``_ROUNDS`` is slowed as
 a whole, which is rare. Without a limit of jerk T is 0.
 
-A short chain never reaches its accelerations: then a shorter T, with accelerations lower by the same share, is faster.
-The fastest of ``_SHARES`` is taken. Called by ``joined``; x m, t s, q rad.
+A slow or a short motion never reaches its accelerations: then a shorter T, with accelerations lower by the same share,
+is faster, and is taken. Called by ``paced``; x m, t s, q rad.
 """
 
 import math
@@ -34,10 +34,11 @@ _FIRMER = 4
 _BOTH = 5
 """Rounds after which speed and acceleration are lowered where a jerk is passed, whichever it seems to come from."""
 _LEAST_LOWERING = 1.002
-_SLACK = 1.0 + 1e-9
+SLACK = 1.0 + 1e-9
 """A limit is kept when it is passed by no more than rounding."""
-_SHARES = (1.0, 0.5, 0.25)
-_LONG = 8.0
+_ALIKE = 0.95
+"""Speeds and shares that differ by less than the rest of this count as one."""
+_LONG = 40.0
 """Motions of more times T are not tried with a shorter one."""
 _WHOLE = 1.0 + 1e-4
 """Least factor by which a motion is slowed as a whole."""
@@ -86,20 +87,26 @@ class Timed:
 
 def timed(path: Path, limits: Limits, mean_s: float) -> Timed:
     """Return the fastest motion found along a path; ``mean_s`` is T. ``Fault`` RBL404 for one of too long a time."""
-    shares = _SHARES if mean_s > 0.0 else (1.0,)
     path = _within_bends(path, limits)
-    best: Timed | None = None
-    for share in shares:
-        found = _timed(path, limits, mean_s * share, share)
-        if best is None or len(found.x) < len(best.x):
-            best = found
-        # a motion that lasts long gains nothing from a shorter mean, and loses by lower accelerations
-        elif len(found.x) > len(best.x):
-            break
-        if (len(best.x) - 1) * limits.period_s > _LONG * mean_s:
-            break
-    assert best is not None
+    best = _timed(path, limits, mean_s, 1.0)
+    if 0.0 < (len(best.x) - 1) * limits.period_s < _LONG * mean_s:
+        share = _better_share(path, mean_s)
+        other = _timed(path, limits, mean_s * share, share) if share < _ALIKE else best
+        best = other if len(other.x) < len(best.x) else best
     return best
+
+
+def _better_share(path: Path, mean_s: float) -> float:
+    """Return the share of its accelerations, and of T, at which a motion is faster, up to 1.
+
+    A top speed that is gained within t of full acceleration takes t / k + k T at a share k; where it is not kept, the
+    whole motion 2 t / sqrt(k) + k T.
+    """
+    law = TimeLaw.of(path.x, rates(path.x, path.bounds))
+    first, last = (int(each) for each in np.flatnonzero(~(law.v < _ALIKE * law.v.max(initial=0.0)))[[0, -1]])
+    keeps = law.t[last] - law.t[first] > mean_s
+    gained_s = law.t[first] if keeps else 0.5 * law.seconds
+    return float(np.clip(gained_s / mean_s, 0.01, 1.0) ** (1.0 / 2.0 if keeps else 2.0 / 3.0))
 
 
 def _within_bends(path: Path, limits: Limits) -> Path:
@@ -121,17 +128,18 @@ def _timed(path: Path, limits: Limits, mean_s: float, share: float) -> Timed:
         found = _along(path, law.sampled(limits.period_s, mean_s))
         fast, gaining, jerk = limits.passed(found.setpoints)
         pace = _pace(path, found.x, limits.period_s)
-        if max((float(each.max()) for each in (fast, gaining, jerk, pace)), key=badness) <= _SLACK:
+        if max((float(each.max()) for each in (fast, gaining, jerk, pace)), key=badness) <= SLACK:
             return found
         firm = 1.0 if round_ < _FIRMER else 1.0 + 0.25 * (round_ - _FIRMER + 1)
+        gently = 0.5 if round_ < _FIRMER else firm
         _lower(path.x, speed, found.x, np.maximum(fast.max(axis=1), pace), (1, around), firm)
         _lower(path.x, acceleration, found.x, gaining.max(axis=1), (2, around), firm)
         # the jerk of a change of speed, or that of the path itself, which a lower speed makes less by its cube
         along = _changing(path, found.x, limits)
         changes = (along >= 0.5 * jerk) | (round_ >= _BOTH)
-        _lower(path.x, acceleration, found.x, np.where(changes, jerk, 0.0).max(axis=1), (3, around), firm)
+        _lower(path.x, acceleration, found.x, np.where(changes, jerk, 0.0).max(axis=1), (3, around), gently)
         bends = ~changes | (round_ >= _BOTH)
-        _lower(path.x, speed, found.x, np.where(bends, jerk, 0.0).max(axis=1), (3, 1), firm / 3.0)
+        _lower(path.x, speed, found.x, np.where(bends, jerk, 0.0).max(axis=1), (3, 1), gently / 3.0)
     return _slowed(path, limits, law, mean_s)
 
 
@@ -206,7 +214,7 @@ def _slowed(path: Path, limits: Limits, law: TimeLaw, mean_s: float) -> Timed:
         shares = limits.passed(found.setpoints)
         over = (float(each.max()) ** (1.0 / power) for power, each in enumerate(shares, start=1))
         worst = max(over, key=badness)
-        if worst <= _SLACK:
+        if worst <= SLACK:
             return found
         factor *= max(worst, _WHOLE)
     raise Fault("RBL404", "no timing of the moves keeps the limits of the joints")

@@ -91,7 +91,7 @@ def test_a_move_that_is_too_fast_is_slowed_until_it_just_holds_the_limit_and_say
     assert 0.98 < used(result) <= 1.0
     assert result.slowdown is not None
     assert result.slowdown.axis == 0
-    assert result.slowdown.factor > 1.05
+    assert result.slowdown.factor > 1.03
     assert {"J1", "151", "deg/s"} <= fields(result.notes[0])
 
 
@@ -183,7 +183,7 @@ def past_the_straight_wrist(bend_deg: float, **options) -> MovePlan:
 def test_a_line_past_the_wrist_singularity_is_slowed_far_from_it_and_refused_close_to_it():
     slowed = past_the_straight_wrist(8.0, speed=1.0)
     assert slowed.slowdown is not None
-    assert slowed.slowdown.factor > 2.0
+    assert 1.5 < slowed.slowdown.factor < 2.0  # as a whole it would take 2.3 times its time
     with pytest.raises(Fault) as caught:
         past_the_straight_wrist(0.2, speed=1.0)
     assert caught.value.code == "RBL412"
