@@ -416,8 +416,9 @@ class Engine:
         if blends or now.chain:  # planned here, where the program can answer a refusal, and not when the chain runs
             plan = self.target.rehearse(world.q_last, command)
             world.q_last = plan.q[-1]
+            now.chain_s = (now.chain_s if now.chain else 0.0) + plan.programmed_s
             # a move that goes nowhere has one row and no room for a blend
-            blends = blends and len(plan.q) > 1 and len(now.chain) + 1 < run_bounds.MAX_CHAIN
+            blends = blends and len(plan.q) > 1 and not self._is_long(len(now.chain) + 1)
         # a move that blends runs when the machine is further on: where it was is kept (``interrupted_at``)
         now.places = (*(now.places if now.chain else ()), self.machine.snapshot())
         now.chain = (*now.chain, Requested(effect=effect, command=command))
@@ -425,6 +426,11 @@ class Engine:
             now.phase, now.doing = Phase.READY, ()
         else:
             self._start_chain()
+
+    def _is_long(self, moves: int) -> bool:
+        """Return whether a chain of so many moves ends with a stop, whatever its last zone is."""
+        many, seconds = run_bounds.LONG_CHAIN
+        return moves >= run_bounds.MAX_CHAIN or (moves >= many and self.now.chain_s >= seconds)
 
     def _start_chain(self) -> None:
         now = self.now

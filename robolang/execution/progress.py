@@ -62,10 +62,10 @@ class Progress:
     """All of an executor that changes, besides machine, world and target.
 
     ``request``: the effect that the program has yielded last; ``doing``: the effects that have been started; ``chain``:
-    moves that are kept, since the next one may blend into them; ``places``: the machine at each of these, or of those
-    that are being done; ``due``: what comes when these have ended; ``aside``: what is interrupted, the innermost last;
-    ``playing``: set-points that were given are being sent. ``ends_us``: the simulated time at which the run is too
-    long.
+    moves that are kept, since the next one may blend into them, and take ``chain_s`` s at their speeds; ``places``:
+    the machine at each of these, or of those that are being done; ``due``: what comes when these have ended;
+    ``aside``: what is interrupted, the innermost last; ``playing``: set-points that were given are being sent.
+    ``ends_us``: the simulated time at which the run is too long.
 
     ``begun``: an effect of the program has been requested; ``stood`` (n,) rad: where the arm was when it was moved by
     set-points between two statements, until the program goes on.
@@ -79,6 +79,7 @@ class Progress:
     request: Effect | None = None
     doing: tuple[Effect, ...] = ()
     chain: tuple[Requested, ...] = ()
+    chain_s: float = 0.0
     places: tuple[MachineSnapshot, ...] = ()
     due: Effect | End | None = None
     aside: tuple[Aside, ...] = ()

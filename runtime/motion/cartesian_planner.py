@@ -115,6 +115,11 @@ class MovePlan:
         return 1.0 if self.piece is None else self.piece.override
 
     @property
+    def programmed_s(self) -> float:
+        """Time that its speed alone takes, or its TIME, s; 0 where it has nothing to do."""
+        return 0.0 if self.piece is None else self.piece.programmed_s
+
+    @property
     def setpoints(self) -> Array:
         """Set-points (N + 1, n) rad of a command that passes ``q``; of a joint move ``q``, on one straight line."""
         return self.q if self.path is None else through(self.q)
@@ -292,7 +297,9 @@ class CartesianPlanner:
             return Candidate(solver=line)
         s = profile(limits, self._profile.period_s, command.duration)
         every = -(-(len(s) - 1) // MOST_SAMPLES)  # a long move is judged in coarser steps, as if it were faster
-        s, period_s = np.unique(np.append(s[::every], 1.0)), every * self._profile.period_s
+        period_s = every * self._profile.period_s
+        if every > 1:
+            s = np.unique(np.append(s[::every], 1.0))
         q = line.rows(s)
         q[0] = line.q_start
 

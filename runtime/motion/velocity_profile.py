@@ -8,12 +8,13 @@ the end. Called by the planners of all moves before anything moves; s without un
 
 import math
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 import ruckig
 
 from runtime.core.faults import Fault
-from runtime.core.frames import Array
+from runtime.core.frames import Array, frozen
 from runtime.core.limits import TIME
 from runtime.core.rounding import beside
 from runtime.core.units import badness
@@ -62,8 +63,9 @@ def bound(extents: list[tuple[float, float, float, float]], shape: SpeedShape) -
     return SpeedLimits(speed=speed, acceleration=acceleration, jerk=math.inf if shape == "trapezoid" else jerk)
 
 
+@lru_cache(maxsize=32)
 def profile(limits: SpeedLimits, period_s: float, duration: float | None = None) -> Array:
-    """Return s (N + 1,) at whole cycles, from exactly 0 to exactly 1, rest to rest.
+    """Return s (N + 1,) at whole cycles, from exactly 0 to exactly 1, rest to rest; the same array when called again.
 
     ``duration`` s may only lengthen the move, which never gets faster than the limits. ``Fault`` RBL404 when it would
     take more than ``MAX_DURATION``.
@@ -78,7 +80,7 @@ def profile(limits: SpeedLimits, period_s: float, duration: float | None = None)
     trajectory = _trajectory(limits, cycles * period_s)
     s = np.array([trajectory.at_time(k * period_s)[0][0] for k in range(cycles + 1)])
     s[0], s[-1] = 0.0, 1.0  # Ruckig ends within rounding of 1; the end is to be the taught one to the last bit
-    return np.asarray(np.clip(s, 0.0, 1.0))
+    return frozen(np.clip(s, 0.0, 1.0))
 
 
 def check_duration(seconds: float) -> None:

@@ -81,11 +81,15 @@ def chains(text, folder):
         moves = [f"MOVE {each}, SPEED 200, ZONE 10" for each in poses[1:]]
         return sum(each["duration_s"] for each in run(folder, f"MOVEJ {poses[0]}", *moves).report["statements"][1:])
 
-    assert f"Up to {run_bounds.MAX_CHAIN} moves" in text
+    many, seconds = run_bounds.LONG_CHAIN
+    assert f"Up to {run_bounds.MAX_CHAIN:,} moves with zones are one path, or {many} that take {seconds:g} s" in text
     pieces = range(-90, 101, 10)
     assert line(*pieces) == pytest.approx(line(100), rel=0.02)
     with pytest.MonkeyPatch.context() as patched:
         patched.setattr(run_bounds, "MAX_CHAIN", 10)
+        assert line(*pieces) > line(100) + 0.05
+    with pytest.MonkeyPatch.context() as patched:
+        patched.setattr(run_bounds, "LONG_CHAIN", (10, 0.45))
         assert line(*pieces) > line(100) + 0.05
 
 

@@ -24,6 +24,7 @@ def bend_speeds(x: Array, across: Array, fastest: Array, jerk: Array, period_s: 
 
     ``across`` (M + 1, n) is the second derivative of the joints by x, ``jerk`` (n,) their limits, rad/s3.
     """
+    # not from the joints at the places themselves: that would solve the arm a hundred times over
     course = _Course(x, across)
     most = _WELL_WITHIN * jerk * period_s**3
     shares = np.empty((len(_LEVELS), len(x)))

@@ -151,6 +151,7 @@ def woven(pieces: Sequence[Piece], found: Sequence[Rounding], arm: Arm) -> list[
     zones = np.array([each.zone for each in found])
     by_pose = np.array([each.by_pose for each in found])
     ends = np.concatenate([[0.0], np.cumsum([piece.extent for piece in pieces])])
+    # a corner that does not fit keeps to half of its moves, and its neighbours are tried again without it
     for _ in range(_WEAVINGS):
         wide = ordered(
             ends, np.minimum(np.where(gentle, np.maximum(zones, halves), halves), _apart(ends, halves, by_pose))

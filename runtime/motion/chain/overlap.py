@@ -64,6 +64,7 @@ class Overlap:
 def ordered(ends: Array, halves: Array) -> Array:
     """Return halves (K - 1,) lowered until each differs from the next by no more than the move between them."""
     found = np.concatenate([[0.0], halves, [0.0]])
+    # there and back: what limits a corner may lie before it or after it
     for k in range(1, len(found) - 1):
         found[k] = min(found[k], found[k - 1] + ends[k] - ends[k - 1])
     for k in range(len(found) - 2, 0, -1):

@@ -55,6 +55,11 @@ class Piece:
         """Whether every pose of it is one of its path."""
         return isinstance(self.curve, LineSolver)
 
+    @property
+    def programmed_s(self) -> float:
+        """Time that its speed alone takes, or its TIME, s."""
+        return max(1.0 / (self.limits.speed * self.override), self.duration_s or 0.0, key=badness)
+
     def joints(self, s: Array, near: Array) -> Array:
         """Return q (N, n) at s (N,), rising, each joint the whole turn nearest to ``near`` (N, n); NaN where lost."""
         if isinstance(self.curve, JointLine):

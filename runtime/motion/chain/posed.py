@@ -15,7 +15,7 @@ from runtime.core.frames import Array, pose, rotation_about
 from runtime.core.linear import matmul
 from runtime.motion.chain.overlap import Numbers, Overlap
 from runtime.motion.chain.piece import Piece
-from runtime.motion.path import LinePath
+from runtime.motion.path import NOTHING_TO_DO, LinePath
 
 
 class Posed:
@@ -36,10 +36,19 @@ class Posed:
                 self._by[k] = piece.path.X_end[:3, 3] - piece.path.X_start[:3, 3]
                 self._axis[k], self._angle[k] = piece.path.axis, piece.path.angle
 
+        self._slides = bool((self._straight & (self._angle <= NOTHING_TO_DO)).all())
+        """Whether all are lines on which the tool keeps its orientation: then their places alone are added."""
+
     def at(self, x: Array, overlap: Overlap) -> Array:
         """Return the poses (N, 4, 4) of the tool at places x (N,) where all moves that run keep their posture."""
         first, last = overlap.running(x)
         X = self._poses(first, overlap.shares(first, x))
+        if self._slides:
+            for step in range(1, int((last - first).max(initial=0)) + 1):
+                rows = np.flatnonzero(first + step <= last)
+                number = first[rows] + step
+                X[rows, :3, 3] += overlap.shares(number, x[rows])[:, None] * self._by[number]
+            return X
         for step in range(1, int((last - first).max(initial=0)) + 1):
             rows = np.flatnonzero(first + step <= last)
             number = first[rows] + step
@@ -52,6 +61,7 @@ class Posed:
         """Return the poses (N, 4, 4) of pieces ``number`` (N,) at shares (N,) of them."""
         R = matmul(rotation_about(self._axis[number], share * self._angle[number]), self._start[number, :3, :3])
         X = pose(self._start[number, :3, 3] + share[:, None] * self._by[number], R)
+        # arcs, splines and lines by three angles: few on long paths, so one by one
         for k in np.unique(number[~self._straight[number]]).tolist():
             rows = number == k
             X[rows] = self._pieces[k].poses(share[rows])
