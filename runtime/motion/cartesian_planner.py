@@ -41,7 +41,7 @@ from runtime.motion.half_turn import in_order
 from runtime.motion.path import NOTHING_TO_DO, ArcPath, LinePath, Path
 from runtime.motion.path_ik import Arm, LineSolver, WristSolver
 from runtime.motion.seam import CalculatedMove, SeamMove, SeamTracker
-from runtime.motion.single import Slowdown, single
+from runtime.motion.single import Slowdown, check_passable, single
 from runtime.motion.spline_path import SplinePath
 from runtime.motion.time_scaling import Pace
 from runtime.motion.velocity_profile import SpeedLimits, bound, profile
@@ -93,7 +93,8 @@ class MovePlan:
 
     ``path`` of the tool point, None for a joint move; ``s`` (N + 1,) path parameter of each row. ``slowdown`` None when
     the move runs as programmed, ``wrist`` None when the tool keeps the posture of the path, ``notes`` for the report;
-    ``piece`` is the move as a piece of a path, None where it has nothing to do.
+    ``piece`` is the move as a piece of a path, None where it has nothing to do; ``draft``: the rows are those of the
+    programmed speed, which the joints may not keep, since the move has a zone and is timed in its chain.
     """
 
     path: Path | None
@@ -103,6 +104,7 @@ class MovePlan:
     wrist: WristChange | None = None
     notes: tuple[str, ...]
     piece: Piece | None = None
+    draft: bool = False
 
     @property
     def acceleration(self) -> float:
@@ -208,12 +210,24 @@ class CartesianPlanner:
                 override=override,
                 duration_s=duration,
             )
-            s, q, slowdown = single(solver, piece, (s, q), curve.line.arm, self._limits)
+            # most moves with a zone never run alone: their time is that of their chain
+            if draft := command.zone > 0.0:
+                check_passable(solver, piece, (s, q), self._limits)
+                slowdown = None
+            else:
+                s, q, slowdown = single(solver, piece, (s, q), curve.line.arm, self._limits)
         wrist = _wrist_change(curve.choice, curve.line, s, q, command.held)
         notes = pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
         notes += _wrist_notes(wrist) + _kept_notes(command, q)
         return MovePlan(
-            path=curve.path, s=frozen(s), q=frozen(q), slowdown=slowdown, wrist=wrist, notes=notes, piece=piece
+            path=curve.path,
+            s=frozen(s),
+            q=frozen(q),
+            slowdown=slowdown,
+            wrist=wrist,
+            notes=notes,
+            piece=piece,
+            draft=draft,
         )
 
     def _piece_limits(self, curve: PathCurve, command: PathMove) -> SpeedLimits:

@@ -16,8 +16,10 @@ from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.chain_path import ChainPath
 from runtime.motion.chain.corner import Corner, Rounding, roundings, woven
 from runtime.motion.chain.paced import ChainLimits, paced
-from runtime.motion.chain.piece import Piece
+from runtime.motion.chain.piece import JointLine, Piece
+from runtime.motion.fine_interpolator import through
 from runtime.motion.path_ik import Arm
+from runtime.motion.single import single
 
 _AROUND = np.linspace(-1.0, 1.0, 33)
 """Places of a corner, by its half, at which its distance from the programmed one is taken."""
@@ -84,22 +86,33 @@ def _runs(
     limits: ChainLimits,
 ) -> list[_Run]:
     """Return moves between two stops as one path; as moves that stop where it cannot be timed, or takes longer."""
-    alone = [
-        _Run(q=plan.q, setpoints=plan.setpoints, number=np.zeros(len(plan.q), dtype=np.intp), share=plan.s)
-        for plan in plans
-    ]
     if len(plans) == 1:
-        return alone
+        return [_alone(plans[0], arm, limits)]
     path = ChainPath(arm, [_piece(plan) for plan in plans], woven([_piece(plan) for plan in plans], rounded, arm))
     try:
         found = paced(path, limits)
     except Fault:
-        return alone
+        return [_alone(plan, arm, limits) for plan in plans]
+    # drafts are never longer than what they stand for
     if len(found.x) - 1 > sum(len(plan.q) - 1 for plan in plans):
-        return alone
+        alone = [_alone(plan, arm, limits) for plan in plans]
+        if len(found.x) - 1 > sum(len(run.q) - 1 for run in alone):
+            return alone
     corners = _corners(path, zones, found.x)
     number, share = path.move_at(found.x), path.share_at(found.x)
     return [_Run(q=found.q, setpoints=found.setpoints, number=number, share=share, corners=corners)]
+
+
+def _alone(plan: MovePlan, arm: Arm, limits: ChainLimits) -> _Run:
+    """Return a move that stops at both ends; ``Fault`` as of ``single``."""
+    s, q = plan.s, plan.q
+    if plan.draft:
+        assert plan.piece is not None  # it goes somewhere
+        curve = plan.piece.curve
+        assert not isinstance(curve, JointLine)  # a joint move is never a draft
+        s, q, _ = single(curve, plan.piece, (s, q), arm, limits)
+    setpoints = q if plan.path is None else through(q)
+    return _Run(q=q, setpoints=setpoints, number=np.zeros(len(q), dtype=np.intp), share=s)
 
 
 def _between_stops(

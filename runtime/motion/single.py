@@ -9,7 +9,7 @@ it runs too close to a singularity. Called by the planners of all moves; units r
 
 import math
 from dataclasses import dataclass, replace
-from typing import NoReturn, Protocol
+from typing import NoReturn, Protocol, TypeAlias
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from runtime.motion.chain.paced import ChainLimits, paced
 from runtime.motion.chain.piece import Piece
 from runtime.motion.chain.timing import SLACK
 from runtime.motion.path_ik import MOST_SLOWDOWN, Arm, check_range
+
+Rows: TypeAlias = tuple[Array, Array]
+"""Path parameters s (K + 1,) and joints q (K + 1, n) rad, one row a cycle."""
 
 QUANTITIES = ("speed", "acceleration", "jerk")
 """What limits of a joint bound, in the order of their derivatives."""
@@ -48,25 +51,19 @@ class Curve(Protocol):
 
 
 def single(
-    curve: Curve, piece: Piece, programmed: tuple[Array, Array], arm: Arm, limits: ChainLimits
+    curve: Curve, piece: Piece, programmed: Rows, arm: Arm, limits: ChainLimits
 ) -> tuple[Array, Array, Slowdown | None]:
     """Return s (N + 1,), q (N + 1, n) of a move, and what slowed it; ``Fault`` of the curve, or RBL404.
 
     ``programmed`` are s (K + 1,) and q (K + 1, n) of the profile of its programmed speed, one row a cycle.
     """
     s, q = programmed
-    joints = replace(limits.joints, speed=limits.joints.speed * piece.override)
-    shares = joints.passed(curve.setpoints(q))
-    # the same curve in k times the time: speeds fall by k, accelerations by k^2, jerks by k^3
-    needed = np.stack([share.max(axis=0) ** (1.0 / power) for power, share in enumerate(shares, start=1)])
+    needed = _needed(curve, piece, q, limits)
     kind, axis = (int(each) for each in np.unravel_index(int(np.argmax(needed)), needed.shape))
     worst = float(needed[kind, axis])
     if piece.acceleration < math.inf and worst <= SLACK:
         return s, q, None
-    # a jerk alone is no singularity
-    steepest = np.maximum(*needed[:2])
-    if not (steepest <= MOST_SLOWDOWN).all():
-        curve.refuse_singular(s, q, int(np.argmax(steepest)))
+    check_passable(curve, piece, programmed, limits)
     try:
         found = paced(ChainPath(arm, [piece], []), limits)
     except Fault:
@@ -75,3 +72,20 @@ def single(
     slower = not worst <= SLACK and len(found.x) > len(s)
     slowdown = Slowdown(factor=(len(found.x) - 1) / (len(s) - 1), axis=axis, quantity=QUANTITIES[kind])
     return found.x / piece.extent, found.q, slowdown if slower else None
+
+
+def check_passable(curve: Curve, piece: Piece, programmed: Rows, limits: ChainLimits) -> None:
+    """Refuse a move that a joint would have to slow by more than ``MOST_SLOWDOWN``; ``Fault`` of the curve."""
+    s, q = programmed
+    # a jerk alone is no singularity
+    steepest = np.maximum(*_needed(curve, piece, q, limits)[:2])
+    if not (steepest <= MOST_SLOWDOWN).all():
+        curve.refuse_singular(s, q, int(np.argmax(steepest)))
+
+
+def _needed(curve: Curve, piece: Piece, q: Array, limits: ChainLimits) -> Array:
+    """Return how many times (3, n) longer q (K + 1, n) would have to take, for each quantity and joint."""
+    joints = replace(limits.joints, speed=limits.joints.speed * piece.override)
+    shares = joints.passed(curve.setpoints(q))
+    # the same curve in k times the time: speeds fall by k, accelerations by k^2, jerks by k^3
+    return np.stack([share.max(axis=0) ** (1.0 / power) for power, share in enumerate(shares, start=1)])
