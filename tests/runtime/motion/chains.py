@@ -13,7 +13,7 @@ time     no chain is slower than the one that stops at every corner
 """
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -121,7 +121,7 @@ def random_chain(robot: Bench, random: np.random.Generator, moves: int) -> Chain
     while len(commands) < moves:
         command = random_move(robot, ends[-1], random)
         try:
-            plan = robot.planner.plan(ends[-1], command, TOOL)
+            plan = robot.planner.plan(ends[-1], replace(command, zone=0.0), TOOL)
         except Fault:
             continue
         commands.append(command)
