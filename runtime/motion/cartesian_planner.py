@@ -217,8 +217,8 @@ class CartesianPlanner:
             else:
                 s, q, slowdown = single(solver, piece, (s, q), curve.line.arm, self._limits)
         wrist = _wrist_change(curve.choice, curve.line, s, q, command.held)
-        notes = pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
-        notes += _wrist_notes(wrist) + _kept_notes(command, q)
+        notes = _wrist_notes(wrist) + _kept_notes(command, q)
+        notes += pace.slow_note(slowdown, len(s) - 1) + pace.time_note(duration, len(s) - 1)
         return MovePlan(
             path=curve.path,
             s=frozen(s),

@@ -108,7 +108,7 @@ def test_a_move_that_cannot_keep_its_speed(tmp_path):
     fast = "MOVEJ JOINT(0, 60, -190, 0, -3, 0)\nMOVE HERE + (0, 100, 0), SPEED 900, WRIST KEEP\n"
     ((_, message, _),) = found(tmp_path, fast, "RBL429")
     assert {"mm/s", "SPEED", "900", "s"} <= fields(message)
-    assert re.search(r"\bJ\d\b.*\b(speed|acceleration)\b", message)
+    assert re.search(r"\bJ\d\b.*\b(speed|acceleration|jerk)\b", message)
 
 
 def test_a_time_is_asked_for_under_the_override(tmp_path):

@@ -88,7 +88,7 @@ def test_keep_ends_in_the_other_posture_and_says_so():
     found = plan(E1, wrist="keep")
     assert found.wrist is None
     assert np.degrees(found.q[-1, 3:]) == pytest.approx((125, 65, -95))
-    assert re.fullmatch(r"keeps the wrist and ends with J[46] at \S+ deg, not at the taught \S+ deg", found.notes[-1])
+    assert re.fullmatch(r"keeps the wrist and ends with J[46] at \S+ deg, not at the taught \S+ deg", found.notes[0])
     assert plan(E1, WristOptions(mode="keep")).notes == found.notes
     with pytest.raises(Fault, match=r"RBL411: J4 .*-200 deg .*25 deg"):
         plan(E2, wrist="keep")
@@ -316,7 +316,7 @@ def test_long_moves_are_chosen_in_coarser_steps_and_checked_in_fine_ones():
 
 def test_a_hold_is_said_with_what_it_came_to():
     found = plan(E2, WristOptions(posture="rpy"), held=("TILT",))
-    assert re.search(r"\bTILT\b.* \d+\.\d deg$", found.notes[-1])
+    assert re.search(r"\bTILT\b.* \d+\.\d deg$", found.notes[0])
 
 
 def test_a_whole_turn_of_the_waist_is_not_left_out():
