@@ -36,6 +36,7 @@ _BOTH = 5
 _LEAST_LOWERING = 1.002
 SLACK = 1.0 + 1e-9
 """A limit is kept when it is passed by no more than rounding."""
+_STILL = 1e-300
 _ALIKE = 0.95
 """Speeds and shares that differ by less than the rest of this count as one."""
 _LONG = 40.0
@@ -99,14 +100,17 @@ def timed(path: Path, limits: Limits, mean_s: float) -> Timed:
 def _better_share(path: Path, mean_s: float) -> float:
     """Return the share of its accelerations, and of T, at which a motion is faster, up to 1.
 
-    A top speed that is gained within t of full acceleration takes t / k + k T at a share k; where it is not kept, the
-    whole motion 2 t / sqrt(k) + k T.
+    A change of speed that takes t at full acceleration takes t / k + k T at a share k; where a top speed is not kept,
+    the two on either side of it take 2 t / sqrt(k) + k T. t is the mean of all changes.
     """
     law = TimeLaw.of(path.x, rates(path.x, path.bounds))
-    first, last = (int(each) for each in np.flatnonzero(~(law.v < _ALIKE * law.v.max(initial=0.0)))[[0, -1]])
-    keeps = law.t[last] - law.t[first] > mean_s
-    gained_s = law.t[first] if keeps else 0.5 * law.seconds
-    return float(np.clip(gained_s / mean_s, 0.01, 1.0) ** (1.0 / 2.0 if keeps else 2.0 / 3.0))
+    rising = np.sign(np.round(np.diff(law.v) / law.v.max(initial=_STILL), 3))
+    edges = np.flatnonzero(np.diff(rising)) + 1
+    lasts = np.diff(law.t[np.concatenate([[0], edges, [len(law.t) - 1]])])
+    changes = rising[np.concatenate([[0], edges])] != 0.0
+    t = float(lasts[changes].mean()) if changes.any() else mean_s
+    keeps = bool((lasts[~changes] > mean_s).any())
+    return float(np.clip(t / mean_s, 0.01, 1.0) ** (1.0 / 2.0 if keeps else 2.0 / 3.0))
 
 
 def _within_bends(path: Path, limits: Limits) -> Path:
