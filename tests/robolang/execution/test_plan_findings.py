@@ -189,11 +189,11 @@ def test_moves_that_are_slow_for_their_corners_have_one_finding_with_what_helps(
     assert code == "RBL429"
     assert 5 <= line <= 9
     speed, programmed, others, takes, expected, *_ = numbers(message)
-    assert (programmed, others) == (300.0, 4.0)
+    assert (programmed, others) == (300.0, 5.0)
     assert speed < 0.5 * programmed
     assert takes > SLOWED * expected
     assert {"ZONE", "0.8"} <= fields(hint)
-    wide = both(tmp_path, text.replace("SPEED 300", "SPEED 100").format(4))
+    wide = both(tmp_path, text.replace("SPEED 300", "SPEED 60").format(4))
     assert [code for code, *_ in wide] == []
 
 

@@ -154,7 +154,7 @@ def test_a_joint_takes_its_limit_at_the_place_that_is_named():
 
 
 def test_a_corner_is_named_from_either_of_its_moves_with_the_speed_in_it():
-    chain = judged([line((0.0, 0.01, 0.0), speed=0.3, zone=0.001), line((0.0, 0.01, 0.01), speed=0.3)])
+    chain = judged([line((0.0, 0.03, 0.0), speed=0.3, zone=0.003), line((0.0, 0.03, 0.03), speed=0.3)])
     first, second = (move.why for move in chain.moves)
     assert "at its end" in first.text
     assert "at its start" in second.text
@@ -162,7 +162,7 @@ def test_a_corner_is_named_from_either_of_its_moves_with_the_speed_in_it():
     points = chain.robot.tool(chain.plan.q[row - 3 : row + 4])[:, :3, 3]
     slowest = np.linalg.norm(np.diff(points, axis=0), axis=1).min() / chain.robot.profile.period_s
     assert float(second.text.split(" mm/s")[0].split()[-1]) == pytest.approx(1e3 * slowest, abs=0.06)
-    assert "ZONE larger than 1" in second.remedy
+    assert "ZONE larger than 3" in second.remedy
 
 
 def test_a_wide_zone_takes_the_reason_away():
