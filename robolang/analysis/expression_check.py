@@ -41,14 +41,16 @@ class ExpressionCheck:
 
     def __init__(self, symbols: CellSymbols, defined: Defined) -> None:
         self._symbols, self._defined = symbols, defined
+        self._in_place: frozenset[str] = frozenset()
 
     @property
     def _known(self) -> frozenset[str]:
-        """Every name that has a value here."""
-        return frozenset((self._symbols.points or frozenset()) | self._defined.values)
+        """Every name that has a value here, and every word that stands for one."""
+        return frozenset((self._symbols.points or frozenset()) | self._defined.values | self._in_place)
 
-    def check(self, node: Expression) -> Iterator[Diagnostic]:
-        """Report what is wrong in an expression and in its parts."""
+    def check(self, node: Expression, in_place: frozenset[str] = frozenset()) -> Iterator[Diagnostic]:
+        """Report what is wrong in an expression and in its parts; ``in_place``: words that may stand for all of it."""
+        self._in_place = in_place if isinstance(node, Name) else frozenset()
         names_no_value: set[int] = set()  # of functions, arrays and components
         after_pose: set[int] = set()  # operands of a chain, where an offset may stand
         for each in walk(node):

@@ -91,8 +91,8 @@ class StatementCheck:
         rule = _RULES.get(type(node))
         if rule is not None:
             yield from rule(self, node)
-        for expression in _expressions(node, declared):
-            yield from self._expressions.check(expression)
+        for expression, in_place in _expressions(node, declared):
+            yield from self._expressions.check(expression, in_place)
 
     # --- what the declarations say -----------------------------------------------------------------------------------
 
@@ -363,8 +363,8 @@ def _assigned_elsewhere(node: Assign, name: Name) -> str:
     return foreign_lines.advice(describe(node)) or known
 
 
-def _expressions(node: Node, declared: Declaration) -> Iterator[Expression]:
-    """Yield the expressions of a statement, its options' among them."""
+def _expressions(node: Node, declared: Declaration) -> Iterator[tuple[Expression, frozenset[str]]]:
+    """Yield the expressions of a statement, its options' among them, each with the words that may stand for it."""
     # an unknown name is reported at its first use only; in a move, the target's counts before the via point's
     for operand in sorted(declared.operands, key=_rank) if declared.options else declared.operands:
         value = getattr(node, operand.name)
@@ -372,7 +372,7 @@ def _expressions(node: Node, declared: Declaration) -> Iterator[Expression]:
             for option in value:
                 yield from _expressions(option, _option(node, option))
         elif value is not None:
-            yield from _computed(value, operand)
+            yield from ((each, declared.in_place) for each in _computed(value, operand))
 
 
 def _computed(value: Any, operand: Operand) -> tuple[Expression, ...]:

@@ -409,7 +409,7 @@ class Engine:
         """Start a move, or keep it where the next one may blend into it; it begins where the one before ends."""
         now, world = self.now, self.world
         now.stood = None
-        command = lowering.move(effect, world.around)
+        command = lowering.move(effect, world.around, self.project.profile.acceleration)
         if now.tracked:
             command = tracked(command)
         blends = command.zone > 0.0

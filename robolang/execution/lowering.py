@@ -73,15 +73,18 @@ def payload(effect: SetPayload, cell: CellSpec) -> Payload:
     return declared(effect.mass_kg, np.array(effect.cog_mm) * MM, cell.robot.rated_payload, inertia)
 
 
-def move(effect: MoveTo, around: Surroundings) -> Command:
-    """Return the motion command of a move; ``Fault`` RBL30x or RBL40x."""
+def move(effect: MoveTo, around: Surroundings, acceleration: float = 1.0) -> Command:
+    """Return the motion command of a move; ``Fault`` RBL30x or RBL40x.
+
+    ``acceleration`` is that of a move without ACCEL (``Profile.acceleration``).
+    """
     goal = _goal(effect.target, around)
     options: dict[str, Any] = {
         "X_world_tool": goal.X,
         "q_end": goal.q_end,
         "configuration": goal.configuration,
         "turns": goal.turns,
-        "acceleration": 1.0 if effect.accel_pct is None else effect.accel_pct * PERCENT,
+        "acceleration": acceleration if effect.accel_pct is None else effect.accel_pct * PERCENT,
         "duration": effect.time_s,
         "zone": effect.zone_mm * MM,
         "override": effect.override_pct * PERCENT,

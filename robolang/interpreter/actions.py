@@ -6,6 +6,7 @@ a move wins over what was set, for this move. Called by the interpreter when it 
 evaluated then, in the units of the text.
 """
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from typing import Any, TypeAlias, TypeGuard
@@ -82,6 +83,8 @@ _OPTIONS: dict[type, tuple[str, limits.Limit]] = {
 }
 """What each option of a move gives, and its range; of a MOVEJ, SPEED is ``_JOINT_SPEED``."""
 _JOINT_SPEED = ("speed_pct", limits.SPEED_PCT)
+_BY_WORD = {"zone_mm": 0.0, "accel_pct": math.inf}
+"""What FINE and MAX stand for: a word in the place of a value."""
 
 
 class Actions:
@@ -137,8 +140,7 @@ class Actions:
                 wrist = option
                 continue
             name, limit = _JOINT_SPEED if joint and isinstance(option, Speed) else _OPTIONS[type(option)]
-            # FINE is the one option without a value
-            values[name] = 0.0 if option.value is None else limit.checked(self._values.number(option.value))
+            values[name] = self._number(option.value, name, limit)
         if "time_s" not in values:  # a duration replaces the speed that was set, not one in the move itself
             name = "speed_pct" if joint else "speed_mm_s"
             values.setdefault(name, getattr(settings, name))
@@ -186,26 +188,32 @@ class Actions:
         if node.word == "FRAME":
             self._values.frame = self._frame(node.value)
             return None
-        value: Any = limits.SETTINGS[node.word].checked(self._values.number(node.value))
-        self.settings = replace(self.settings, **{_SET[node.word]: value})
+        name = _SET[node.word]
+        value: Any = self._number(node.value, name, limits.SETTINGS[node.word])
+        self.settings = replace(self.settings, **{name: value})
         return None
 
-    def _frame(self, node: Expression) -> Frame:
+    def _number(self, node: Expression | None, name: str, limit: limits.Limit) -> float:
+        """Return the value of a setting or an option, None where a word stands for it; ``Fault`` RBL404, RBL415."""
+        return _BY_WORD[name] if node is None else limit.checked(self._values.number(node))
+
+    def _frame(self, node: Expression | None) -> Frame:
         """Return the frame that an expression names: a name of the cell, "" for ``WORLD``, else a pose in the world."""
         if self._is_of_cell(node):
             return "" if node.key == WORLD else node.key  # whether the cell has it is known to the lowering
         return self._in_the_world(node)
 
-    def _tool(self, node: Expression) -> Frame:
+    def _tool(self, node: Expression | None) -> Frame:
         """Return the tool that an expression names: a name of the cell, else a pose in the flange."""
         return node.key if self._is_of_cell(node) else self._in_the_world(node, of_flange=True)
 
-    def _is_of_cell(self, node: Expression) -> TypeGuard[Name]:
+    def _is_of_cell(self, node: Expression | None) -> TypeGuard[Name]:
         """Return whether a name has no value in the program, so that it must be one of the cell."""
         return isinstance(node, Name) and self._scopes.value(node.key) is None
 
-    def _in_the_world(self, node: Expression, *, of_flange: bool = False) -> Six:
+    def _in_the_world(self, node: Expression | None, *, of_flange: bool = False) -> Six:
         """Return the numbers of a pose, whatever frame is active; of a flange's those that it was made of."""
+        assert node is not None  # ACCEL alone has a word in place of a value
         # a FRAME is given in the world, so that two of them in a row do not add up
         frame, self._values.frame = self._values.frame, ""
         try:

@@ -58,10 +58,10 @@ class MoveTo(OfStatement):
     """Move the tool to a place; None where the move leaves a value open.
 
     ``path``: straight, with all joints together, on an arc over the place ``via``, or on a spline through the places
-    ``via``. ``speed_mm_s`` of the tool point and
-    ``speed_pct`` of the joints (``path`` joint), ``accel_pct``, ``time_s`` for all of the move, ``override_pct`` of
-    every speed. ``zone_mm``: radius within which it blends into the next one, 0: it stops. ``wrist`` and ``held`` are
-    the mode and the components of ``SetWrist`` that hold for this move; None and () when the program has given neither.
+    ``via``. ``speed_mm_s`` of the tool point and ``speed_pct`` of the joints (``path`` joint), ``accel_pct``, infinite
+    for MAX, ``time_s`` for all of the move, ``override_pct`` of every speed. ``zone_mm``: radius within which it blends
+    into the next one, 0: it stops. ``wrist`` and ``held`` are the mode and the components of ``SetWrist`` that hold for
+    this move; None and () when the program has given neither.
     """
 
     path: PathKind = "line"

@@ -119,7 +119,7 @@ def _layer(table: Table) -> Layer:
 
 def _bounds(table: Table) -> "dict[Bound, float]":
     """Read the tables of rules that have bounds."""
-    if not any(table.is_table(key) for key in table.names()):
+    if not any(table.holds(key, dict) for key in table.names()):
         return {}
     from robolang.core.bounds import BOUNDS  # here, since few files set one and every check comes by
 

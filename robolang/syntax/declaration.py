@@ -125,6 +125,11 @@ class Declaration(NamedTuple):
         return (*of_options, *choices, *of_forms)
 
     @property
+    def in_place(self) -> frozenset[str]:
+        """The words that may stand in the place of its operand, as MAX after ACCEL."""
+        return frozenset(word for text in self.forms[1:] for word in _KEYWORD.findall(text)[1:])
+
+    @property
     def starts(self) -> tuple[str, ...]:
         """The words that it may begin with, as ``ZONE`` and ``FINE``, or ``SEAM ON`` and ``SEAM OFF``."""
         choices = {operand.name: operand.words for operand in self.operands}

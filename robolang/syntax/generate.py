@@ -53,7 +53,7 @@ def nodes() -> str:
 
 
 def _class(node: str, declared: list[Declaration]) -> str:
-    operands = declared[0].operands
+    operands = _operands(declared)
     shares = len(declared) > 1 and not declared[0].options
     fields = [*(["word"] if shares else []), *(operand.name for operand in operands)]
     parameters = [*(["word: str"] if shares else []), *map(_parameter, operands), "span: Span = NOWHERE"]
@@ -72,6 +72,12 @@ def _class(node: str, declared: list[Declaration]) -> str:
         "",
     ]
     return "\n".join(lines)
+
+
+def _operands(declared: list[Declaration]) -> tuple[Operand, ...]:
+    """Return the operands of a class: one that is optional in any of its statements may be None."""
+    each = zip(*(one.operands for one in declared), strict=True)
+    return tuple(same[0]._replace(optional=any(operand.optional for operand in same)) for same in each)
 
 
 def _docstring(declared: list[Declaration]) -> list[str]:

@@ -11,6 +11,7 @@ from robolang.syntax import other_languages
 from robolang.syntax.declaration import units
 from robolang.syntax.keywords import (
     COMPONENTS,
+    FUNCTIONS,
     INSTRUCTIONS,
     KEYWORDS,
     MOTIONS,
@@ -335,7 +336,7 @@ def _is_reserved(word: str) -> str:
 def _not_an_instruction(found: Unexpected) -> str | None:
     if not found.is_first:
         return None
-    if found.word in RESERVED - KEYWORDS and found.after.lstrip().startswith("="):
+    if found.word in (RESERVED - KEYWORDS) | FUNCTIONS and found.after.lstrip().startswith("="):
         return _is_reserved(found.word)
     return "a line number is a whole number" if found.kind == "NUMBER" else lookup("RBL112").remedy
 

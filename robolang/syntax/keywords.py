@@ -47,10 +47,10 @@ _FAMILIAR = {
 def kind_of(word: str) -> str | None:
     """Return the terminal of a word: itself for a keyword, FUNCTION or VALUE for what has a value, None for a name."""
     upper = word.upper()
+    if upper in FUNCTIONS:  # first: MAX is a keyword only where the grammar has its own terminal for it
+        return "FUNCTION"
     if upper in KEYWORDS:
         return upper
-    if upper in FUNCTIONS:
-        return "FUNCTION"
     return "VALUE" if upper in VALUES else None
 
 

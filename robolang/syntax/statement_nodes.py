@@ -18,11 +18,11 @@ class Speed(Node):
 
 
 class Accel(Node):
-    """``ACCEL %``: acceleration and jerk, % of the robot's."""
+    """``ACCEL % or ACCEL MAX``: acceleration and jerk, % of the robot's; MAX: as the joints allow."""
 
     __slots__ = ("value",)
 
-    def __init__(self, *, value: Expression, span: Span = NOWHERE) -> None:
+    def __init__(self, *, value: Expression | None = None, span: Span = NOWHERE) -> None:
         self.value: Final = value
         self.span = span
 
@@ -170,13 +170,13 @@ class Seam(Node):
 
 
 class Setting(Node):
-    """``SPEED mm/s``, ``SPEEDJ %``, ``ACCEL %``, ``OVERRIDE %``, ``ZONE mm``, ``TOOL name, pose or FLANGE``, ``FRAME
-    name, pose or WORLD``.
+    """``SPEED mm/s``, ``SPEEDJ %``, ``ACCEL % or ACCEL MAX``, ``OVERRIDE %``, ``ZONE mm``, ``TOOL name, pose or
+    FLANGE``, ``FRAME name, pose or WORLD``.
     """
 
     __slots__ = ("word", "value")
 
-    def __init__(self, *, word: str, value: Expression, span: Span = NOWHERE) -> None:
+    def __init__(self, *, word: str, value: Expression | None = None, span: Span = NOWHERE) -> None:
         self.word: Final = word
         self.value: Final = value
         self.span = span

@@ -71,10 +71,13 @@ _WRIST = Declaration(
     ),
     effect="SetWrist",
 )
+_ACCEL_FORMS = ("ACCEL {value}", "ACCEL MAX")
+_ACCEL = _number("value", limits.ACCEL.unit, limits.ACCEL, optional=True)
+_JOINTS_ALONE = "MAX: as the joints allow"
 _SPEED = _option("Speed", "SPEED {value}", "speed of the tool point, mm/s", limits.SPEED)
 _SPEED_OF_JOINTS = _option("Speed", "SPEED {value}", "speed, % of the joint limits", limits.SPEED_PCT)
 _MORE = (
-    _option("Accel", "ACCEL {value}", "acceleration and jerk, % of the robot's", limits.ACCEL),
+    Declaration("Accel", _ACCEL_FORMS, f"acceleration and jerk, % of the robot's; {_JOINTS_ALONE}", (_ACCEL,)),
     _option("Time", "TIME {value}", "duration of the move, s", limits.TIME),
     Declaration(
         "Zone",
@@ -171,7 +174,7 @@ _MOTION = (
 _SETTINGS = (
     _setting("SPEED", "sets the speed of straight moves, arcs and splines, mm/s", limits.SPEED),
     _setting("SPEEDJ", "sets the speed of MOVEJ, % of the joint limits", limits.SPEEDJ),
-    _setting("ACCEL", "sets acceleration and jerk, %", limits.ACCEL),
+    Declaration("Setting", _ACCEL_FORMS, f"sets acceleration and jerk, %; {_JOINTS_ALONE}", (_ACCEL,)),
     _setting("OVERRIDE", "scales every speed that follows, %", limits.OVERRIDE),
     _setting("ZONE", "sets the radius in which moves blend, mm", limits.ZONE),
     _of_cell("TOOL", "tool", "FLANGE", "takes a tool of the cell, or a pose in the flange", "SetTool"),

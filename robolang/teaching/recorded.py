@@ -6,6 +6,7 @@ are options of each move; OVERRIDE and FRAME are written where they change. A WA
 that was stopped ends where the arm came to rest, and one that did not blend has no ZONE.
 """
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
@@ -192,7 +193,7 @@ class _Writer:
             "TIME": effect.time_s,
             "ZONE": effect.zone_mm or None,
         }
-        text = "".join(f", {word} {number(value)}" for word, value in values.items() if value is not None)
+        text = "".join(f", {word} {_value(value)}" for word, value in values.items() if value is not None)
         wrist = "" if effect.wrist is None or joint else _wrist(effect.wrist, effect.held)
         return text if wrist in ("", self._wrist) else f"{text}, {wrist}"
 
@@ -309,6 +310,10 @@ def _backs(shift: Shift) -> bool:
 def _same(one: Point, other: Point) -> bool:
     # its comment moves nothing
     return one.replaced(name="", comment="") == other.replaced(name="", comment="")
+
+
+def _value(value: float) -> str:
+    return "MAX" if math.isinf(value) else number(value)
 
 
 def _wrist(mode: str, held: tuple[str, ...]) -> str:

@@ -137,7 +137,7 @@ def _schema(table: Table) -> None:
 def _end_of_part(parts: Table, name: str) -> tuple[float, ...]:
     """Return where a part ends, mm; a lone number may be a misspelt ``part_mm``."""
     parts.ask(name)
-    if not parts.is_list(name):
+    if not parts.holds(name, list):
         hint = "write the place of the part, [x, y, z] in mm"
         if "part_mm" not in parts:
             hint += "; did you mean 'part_mm'?"

@@ -326,13 +326,9 @@ class Table:
             self.fail("RBL613", f"'{self.name(key)}' must be {form}, not {got}", key=key)
         return tuple(self._checked(key, item, low, high, positive) for item in value)
 
-    def is_list(self, key: str) -> bool:
-        """Return whether the value of a key is a list; False without the key."""
-        return isinstance(self._data.get(key), list)
-
-    def is_table(self, key: str) -> bool:
-        """Return whether the value of a key is a table; False without the key."""
-        return isinstance(self._data.get(key), dict)
+    def holds(self, key: str, kind: type) -> bool:
+        """Return whether the value of a key is a list, a str, or a dict for a table; False without the key."""
+        return isinstance(self._data.get(key), kind)
 
     def raw_list(self, key: str) -> list[Any]:
         """Return an optional list, its entries unchecked (empty when missing)."""

@@ -11,7 +11,7 @@ that fits, so that no program runs slower than it is written. Called by the expo
 """
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -21,7 +21,7 @@ from runtime.core.frames import Array
 from runtime.core.linear import dot, matmul
 from runtime.core.rounding import beside, down
 from runtime.core.units import MM
-from runtime.motion.commands import MoveLinear
+from runtime.motion.commands import MAX, MoveLinear
 from runtime.motion.velocity_profile import MAX_DURATION, SpeedLimits, check_duration
 from runtime.pulses.channels import Channel
 from runtime.pulses.emission import Emission, Pulses, emit, least_step
@@ -73,6 +73,7 @@ def plan_move(
     machine: Machine, stand: Stand, command: MoveLinear, channels: tuple[Channel, ...], start: Pulses, step_s: float
 ) -> MovePulses:
     """Return a move of ``machine`` from ``stand``, whose channels are at ``start`` (M,) pulses; ``Fault`` RBL4xx."""
+    command, notes = _with_ramp(command)
     curve = machine.curve(stand, command)
     if curve.limits is None:
         line = _TimedLine(curve=curve, steps=None, q=stand.q[None], notes=("already there",))
@@ -80,7 +81,8 @@ def plan_move(
         none = Emission(steps=nothing[:, 0], raised=0, debt=0, settled=0, rule="none")
         return _measured(machine, channels, line, start, nothing, (none,) * len(channels))
     override = command.override
-    limits, notes = _timed(curve.limits.overridden(override), command.duration and command.duration / override)
+    limits, of_time = _timed(curve.limits.overridden(override), command.duration and command.duration / override)
+    notes += of_time
     steps, q, slowed, ruling = _within_limits(machine, curve, limits, step_s, override)
     if slowed > 1.0:
         notes += (f"slowed {slowed:.2f} times to {steps.seconds:.3f} s: limits of {ruling}",)
@@ -95,6 +97,13 @@ def plan_move(
         for k, channel in enumerate(channels)
     )
     return _measured(machine, channels, line, start, planned, emitted)
+
+
+def _with_ramp(command: MoveLinear) -> tuple[MoveLinear, tuple[str, ...]]:
+    """Return a move with an acceleration along its line, and a note where it has none: S02 needs T0 = V / a."""
+    if command.acceleration != MAX:
+        return command, ()
+    return replace(command, acceleration=1.0), ("ACCEL MAX is ACCEL 100: the ramps of a table need one acceleration",)
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

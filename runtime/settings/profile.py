@@ -5,10 +5,12 @@ file or option a value is taken from is in ``layers``. Times in whole microsecon
 docs/servo.md (Kf, Ka, K2, feed-forward source).
 """
 
+import math
 from typing import Literal
 
 from runtime.core.record import Record
 from runtime.core.tomlfile import Table
+from runtime.core.units import PERCENT
 from runtime.robot.model.joint_table import JointTable
 from runtime.robot.model.load_rules import LoadMode
 from runtime.settings.setting import choice, custom, each_axis, flag, group, number, text, three, whole
@@ -33,6 +35,18 @@ def _servo_period(table: Table, name: str) -> float:
     if value not in SERVO_PERIODS_MS:
         table.fail("RBL605", f"'{name}' is {value:g}; it must be 0.25, 0.5 or 1", key=name)
     return value
+
+
+def _acceleration(table: Table, name: str) -> float | str:
+    if not table.holds(name, str):
+        return table.number(name, positive=True, high=100.0)
+    if (word := table.text(name)) != "max":
+        table.fail("RBL610", f"'{name}' is '{word}'; it must be a number of per cent or \"max\"", key=name)
+    return word
+
+
+def _share(value: float | str) -> float:
+    return math.inf if isinstance(value, str) else value * PERCENT  # ``runtime.motion.commands.MAX``
 
 
 def _us(milliseconds: float) -> int:
@@ -142,6 +156,8 @@ class Profile(Record):
     load_mode: LoadMode = choice("load_mode", "add", "replace")
     inertia_source: InertiaSource = choice("inertia_source", "pass", "recursion", "matrix")
     speed_shape: SpeedShape = choice("speed_shape", "jerk", "trapezoid")
+    # of moves without ACCEL, a share of the robot's; infinite: the joints alone decide
+    acceleration: float = custom("acceleration", 100.0, "%", _acceleration, _share)
     in_position: float = number("in_position_deg", 0.05, "deg", positive=True, high=10.0)
     settle_timeout_us: int = number("settle_timeout_s", 0.4, "s", si=_seconds_us, low=0.0, high=60.0)
     servo: ServoOptions = group("servo", ServoOptions)

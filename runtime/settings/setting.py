@@ -111,4 +111,4 @@ def _scaled(unit: str) -> Callable[[float], float]:
 
 def _one_or_each(table: Table, name: str) -> tuple[float, ...]:
     limits: dict[str, Any] = {"positive": True, "high": 1e5}
-    return table.numbers(name, None, **limits) if table.is_list(name) else (table.number(name, **limits),)
+    return table.numbers(name, None, **limits) if table.holds(name, list) else (table.number(name, **limits),)
