@@ -49,8 +49,8 @@ class ExpressionCheck:
         return frozenset((self._symbols.points or frozenset()) | self._defined.values | self._in_place)
 
     def check(self, node: Expression, in_place: frozenset[str] = frozenset()) -> Iterator[Diagnostic]:
-        """Report what is wrong in an expression and in its parts; ``in_place``: words that may stand for all of it."""
-        self._in_place = in_place if isinstance(node, Name) else frozenset()
+        """Report what is wrong in an expression and in its parts; ``in_place``: words that a name in it may mean."""
+        self._in_place = in_place
         names_no_value: set[int] = set()  # of functions, arrays and components
         after_pose: set[int] = set()  # operands of a chain, where an offset may stand
         for each in walk(node):

@@ -372,7 +372,9 @@ def _expressions(node: Node, declared: Declaration) -> Iterator[tuple[Expression
             for option in value:
                 yield from _expressions(option, _option(node, option))
         elif value is not None:
-            yield from ((each, declared.in_place) for each in _computed(value, operand))
+            for each in _computed(value, operand):
+                # of a word that stands for the whole value: in MAXX + 1 a name is meant
+                yield each, declared.in_place if isinstance(each, Name) else frozenset()
 
 
 def _computed(value: Any, operand: Operand) -> tuple[Expression, ...]:

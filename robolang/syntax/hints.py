@@ -24,6 +24,7 @@ from robolang.syntax.keywords import (
 )
 from robolang.syntax.statements import STATEMENTS
 from robolang.syntax.unexpected import END, Unexpected, expected, last_word, quote
+from robolang.values import functions
 from runtime.core.faults import lookup
 
 _Question = Callable[[Unexpected], str | None]
@@ -404,6 +405,10 @@ def _reserved_target(found: Unexpected) -> str | None:
     return _is_reserved(found.instruction) if fits else None
 
 
+def _function_alone(found: Unexpected) -> str | None:
+    return f"the form is {functions.FUNCTIONS[found.word].form}" if found.kind in FUNCTIONS else None
+
+
 def _reserved_name(found: Unexpected) -> str | None:
     return _is_reserved(found.word) if "NAME" in found.accepts and found.word in RESERVED else None
 
@@ -419,5 +424,6 @@ _WORDS: tuple[_Question, ...] = (
     _no_value,
     _second_instruction,
     _reserved_target,
+    _function_alone,
     _reserved_name,
 )

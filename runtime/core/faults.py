@@ -189,8 +189,8 @@ register(
         code="RBL404",
         name="speed-out-of-range",
         meaning="A speed, acceleration, distance or duration is outside its range.",
-        remedy="Give SPEED in mm/s; SPEED of MOVEJ, SPEEDJ, ACCEL and OVERRIDE in %, above 0 to 100; TIME in s, above "
-        "0 to 600; the distance of APPROACH and DEPART in mm, 0 to 100000.",
+        remedy="Give SPEED in mm/s; SPEED of MOVEJ, SPEEDJ, ACCEL and OVERRIDE in %, above 0 to 100, or ACCEL MAX; "
+        "TIME in s, above 0 to 600; the distance of APPROACH and DEPART in mm, 0 to 100000.",
         found=Stage.CELL,
         computed=True,
     ),

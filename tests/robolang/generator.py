@@ -102,7 +102,7 @@ wrists = st.one_of(
 )
 OPTIONS = {
     ast.Speed: make(ast.Speed, value=expressions),
-    ast.Accel: make(ast.Accel, value=expressions),
+    ast.Accel: make(ast.Accel, value=st.none() | expressions),
     ast.Time: make(ast.Time, value=expressions),
     ast.Zone: make(ast.Zone, value=st.none() | expressions),
     ast.Wrist: wrists,
@@ -138,7 +138,10 @@ def simple_statements(targets):
         ast.Hand: make(ast.Hand, state=st.sampled_from(ast.HandState), dwell=st.none() | expressions),
         ast.Wrist: wrists,
         ast.Seam: make(ast.Seam, sensor=st.none() | names),
-        ast.Setting: make(ast.Setting, word=st.sampled_from(SETTINGS), value=expressions),
+        ast.Setting: st.one_of(
+            make(ast.Setting, word=st.sampled_from(SETTINGS), value=expressions),
+            make(ast.Setting, word=st.just("ACCEL"), value=st.none()),
+        ),
         ast.Assign: make(
             ast.Assign,
             target=assigned | make(ast.Call, name=assigned, arguments=several(expressions, most=1)),

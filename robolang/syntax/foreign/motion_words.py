@@ -128,6 +128,13 @@ SETTINGS = (
     Entry("VELSET", (RAPID,), "scales every speed", "OVERRIDE 50"),
     Entry("SPEEDREFRESH", (RAPID,), "scales every speed", "OVERRIDE 50"),
     Entry("ACCSET", (RAPID,), "sets acceleration", "ACCEL 50"),
+    Entry(
+        "PATHACCLIM",
+        (RAPID,),
+        "limits the acceleration of the tool",
+        "ACCEL 50",
+        note="ACCEL MAX sets no limit along the path",
+    ),
     Entry("ACC", (KRL, TP), "is an acceleration", "ACCEL 50"),
     Entry("DECEL", (AS, PAC), "sets deceleration", "ACCEL 50", note=_ONE_VALUE),
     Entry("OADL", (MELFA,), "fits acceleration to the load", note="LOAD does that here"),

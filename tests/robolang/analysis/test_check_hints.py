@@ -55,6 +55,13 @@ def test_fine_beside_zone_is_named_by_both_words():
     assert "FINE" not in first("MOVE P1, ZONE 5, ZONE 5").message
 
 
+def test_a_misspelt_max_is_one_only_as_the_whole_value_of_accel():
+    assert "MAX" in fields(first("ACCEL MXA", points=()).hint)
+    assert "MAX" in fields(first("MOVE P1, ACCEL MAXX", points=("P1",)).hint)
+    assert "MAX" not in fields(first("ACCEL MXA + 1", points=()).hint)
+    assert "MAX" not in fields(first("SPEED MXA", points=()).hint)
+
+
 def test_one_value_is_not_several():
     item = first("CALL up\nEND\nSUB up(x)\nPRINT x\nENDSUB")
     assert (item.code, item.span) == ("RBL214", Span(0, 7))

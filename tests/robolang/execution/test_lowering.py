@@ -10,7 +10,7 @@ from robolang.interpreter.effects import MoveTo, SetPayload
 from robolang.project.project import builtin_cell, load_project
 from robolang.values.poses import Place
 from runtime.core.faults import Fault
-from runtime.motion.commands import MoveArc, MoveJoint, MoveLinear, MoveSpline
+from runtime.motion.commands import MAX, MoveArc, MoveJoint, MoveLinear, MoveSpline
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.robolang.helpers import parsed
 from tests.robolang.running import execute
@@ -31,10 +31,10 @@ def around(tmp_path_factory):
     )
 
 
-def command(text, around):
+def command(text, around, acceleration=1.0):
     *_, effect = execute(parsed(text), Nowhere(), around.points.names)
     assert isinstance(effect, MoveTo)
-    return lowering.move(effect, around)
+    return lowering.move(effect, around, acceleration)
 
 
 def six(text, around):
@@ -52,6 +52,11 @@ def test_units(around):
     assert isinstance(found, MoveLinear)
     assert (found.speed, found.acceleration, found.zone, found.duration) == pytest.approx((0.2, 0.5, 0.005, None))
     assert command("MOVE P1, TIME 3", around).duration == 3.0
+    assert [command(f"MOVEJ P1{text}", around, 0.3).acceleration for text in ("", ", ACCEL 50", ", ACCEL MAX")] == [
+        0.3,
+        0.5,
+        MAX,
+    ]
     joint = command("MOVEJ P1, SPEED 20", around)
     assert isinstance(joint, MoveJoint)
     assert joint.speed == pytest.approx(0.2)

@@ -1,3 +1,4 @@
+import math
 from pathlib import Path
 
 import pytest
@@ -127,6 +128,7 @@ def to(path="line", **values):
         ("MOVE P1, FINE", to()),
         ("MOVE P1, ZONE 5, WRIST KEEP, TIME 2", to(zone_mm=5.0, wrist="keep", time_s=2.0)),
         ("MOVEJ P1, SPEED 5, ACCEL 6", to("joint", speed_pct=5.0, accel_pct=6.0)),
+        ("MOVEJ P1, ACCEL MAX", to("joint", accel_pct=math.inf)),
         ("MOVEC A, P1, SPEED 5", to("arc", via=(Place(point="A"),), speed_mm_s=5.0)),
         ("SPLINE (A, B, P1), ZONE 5", to("spline", via=(Place(point="A"), Place(point="B")), zone_mm=5.0)),
         ("APPROACH P1, 50", to(target=P1.shifted(BACK))),
@@ -161,6 +163,8 @@ def test_each_statement_is_one_effect(text, effect):
         ("SPEED 5", to(speed_mm_s=5.0)),
         ("SPEEDJ 5", to()),
         ("ACCEL 5", to(accel_pct=5.0)),
+        ("ACCEL MAX", to(accel_pct=math.inf)),
+        ("ACCEL MAX\nACCEL MAX(5, 6)", to(accel_pct=6.0)),
         ("OVERRIDE 50", to(override_pct=50.0)),
         ("ZONE 5", to(zone_mm=5.0)),
         ("ZONE 5\nZONE 0", to()),

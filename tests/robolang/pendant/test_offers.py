@@ -50,6 +50,9 @@ KNOWN = Known(
 )
 
 
+OPTIONS = ["SPEED", "ACCEL", "ACCEL MAX", "TIME", "ZONE", "FINE", "WRIST HOLD", "WRIST KEEP", "WRIST AUTO"]
+
+
 def texts(typed):
     return [each.text for each in offered(typed, KNOWN, COMMANDS)]
 
@@ -66,9 +69,9 @@ def meaning(typed, text):
         ("20 MOVEJ ", ["P1", "P2", "p10"]),
         ("MOVEC P1, ", ["P1", "P2", "p10"]),
         ("SPLINE (P1, ", ["P1", "P2", "p10"]),
-        ("SPLINE (P1, P2), ", ["SPEED", "ACCEL", "TIME", "ZONE", "FINE", "WRIST HOLD", "WRIST KEEP", "WRIST AUTO"]),
+        ("SPLINE (P1, P2), ", OPTIONS),
         ("spl", ["SPLINE"]),
-        ("MOVE P1, ", ["SPEED", "ACCEL", "TIME", "ZONE", "FINE", "WRIST HOLD", "WRIST KEEP", "WRIST AUTO"]),
+        ("MOVE P1, ", OPTIONS),
         ("MOVE P1, w", ["WRIST HOLD", "WRIST KEEP", "WRIST AUTO"]),
         ("MOVE P1, SPEED ", ["HELLO", "FAST", "a", "P1"]),
         ("GOTO ", ["*AGAIN", "10", "20", "30", "40", "50"]),

@@ -11,6 +11,7 @@ from robolang.project.points import load_points
 from robolang.syntax import grammar
 from robolang.syntax.ast import (
     Accel,
+    Call,
     Component,
     Hand,
     HandState,
@@ -20,6 +21,7 @@ from robolang.syntax.ast import (
     Negate,
     Number,
     Seam,
+    Setting,
     Speed,
     Time,
     Vector,
@@ -31,6 +33,7 @@ from robolang.syntax.keywords import FUNCTIONS, KEYWORDS, VALUES
 from robolang.syntax.unparse import describe
 from tests.messages import fields
 from tests.robolang.helpers import only, parse_found, parsed, source
+from tests.together import together
 
 
 def statement(text):
@@ -120,8 +123,22 @@ def test_wrist_and_seam_have_one_canonical_text(text):
 
 def test_no_word_is_of_this_edition_and_of_a_later_one():
     assert {"WRIST", "SEAM", "KEEP", "AUTO", "HOLD", "TILT", "ADVANCE", "ROTATION"} <= KEYWORDS
-    assert not KEYWORDS & FUNCTIONS
+    assert KEYWORDS & FUNCTIONS == {"MAX"}  # the function has its parentheses, the word of ACCEL has none
     assert not (KEYWORDS | FUNCTIONS) & VALUES
+
+
+@together("text", ["ACCEL MAX", "accel max", "ACCEL MAX ' (of the joints)", "ACCEL Max REM (2)"])
+def test_max_stands_for_the_value_of_accel(text):
+    assert statement(text) == Setting(word="ACCEL")
+    assert describe(statement(text)) == "ACCEL MAX"
+    (option,) = statement(f"MOVE P1, {text}").options
+    assert (option, describe(option)) == (Accel(), "ACCEL MAX")
+
+
+@together("text", ["ACCEL MAX(1, 2)", "accel max (1, 2)", "ACCEL MAX\t(1, 2)"])
+def test_max_with_arguments_is_the_function(text):
+    assert describe(statement(text)) == "ACCEL MAX(1, 2)"
+    assert isinstance(statement(text).value, Call)
 
 
 def conflicts(grammar, caplog):
@@ -239,6 +256,8 @@ FORMS = [
     ("SPEED 5", "Setting"),
     ("SPEEDJ 5", "Setting"),
     ("ACCEL 5", "Setting"),
+    ("ACCEL MAX", "Setting"),
+    ("MOVE P1, ACCEL MAX, ZONE 5", "Move"),
     ("OVERRIDE 5", "Setting"),
     ("ZONE 5", "Setting"),
     ("TOOL gun", "Setting"),

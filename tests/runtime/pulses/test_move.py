@@ -9,7 +9,7 @@ import pytest
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.core.units import MM
-from runtime.motion.commands import MoveLinear
+from runtime.motion.commands import MAX, MoveLinear
 from runtime.pulses import emission
 from runtime.pulses.channels import default_channels
 from runtime.pulses.machine import Stand
@@ -105,6 +105,13 @@ def test_time_is_the_whole_of_the_move():
     assert found.notes == ()
     found, _ = move(duration=0.5)
     assert {"TIME", "0.5", "s"} <= fields(found.notes[0])
+
+
+def test_without_a_limit_along_the_line_the_ramps_are_those_of_the_machine():
+    found, _ = move(acceleration=MAX)
+    assert np.array_equal(found.planned, move()[0].planned)
+    assert {"ACCEL", "MAX", "100"} <= fields(found.notes[0])
+    assert len(move(acceleration=MAX, duration=0.5)[0].notes) == 2
 
 
 def test_a_joint_that_would_be_too_fast_slows_the_move():

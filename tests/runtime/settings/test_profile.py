@@ -1,3 +1,5 @@
+import math
+
 import pytest
 
 from runtime.core.tomlfile import FileFault, Source, load_table
@@ -17,6 +19,17 @@ def test_no_table_and_an_empty_one_give_the_defaults():
     assert (Profile().ticks_per_cycle, Profile().tick_s, Profile().period_s) == (8, 0.001, 0.008)
 
 
+def test_the_acceleration_is_a_share_or_max():
+    assert profile("acceleration = 'max'").acceleration == math.inf
+    codes = {}
+    for value in ("0", "101", "nan", "'fast'", "'MAX'", "true"):
+        with pytest.raises(FileFault) as caught:
+            profile(f"acceleration = {value}")
+        codes[value] = caught.value.code
+    refused = {"0": "RBL605", "101": "RBL605", "nan": "RBL604", "'fast'": "RBL610", "'MAX'": "RBL610", "true": "RBL613"}
+    assert codes == refused
+
+
 @pytest.mark.parametrize(("period_ms", "ticks"), [("1", 8), ("0.5", 16), ("0.25", 32), ("1.0", 8)])
 def test_the_servo_period_divides_the_cycle(period_ms, ticks):
     read = profile(f"servo_period_ms = {period_ms}")
@@ -27,13 +40,13 @@ def test_the_servo_period_divides_the_cycle(period_ms, ticks):
 def test_every_key_is_read_in_the_unit_of_its_name():
     read = profile(
         "interpolation_cost_ms = 2.5\ndynamics_cost_per_axis_ms = 0.5\nload_mode = 'replace'\n"
-        "speed_shape = 'trapezoid'\n"
+        "speed_shape = 'trapezoid'\nacceleration = 40\n"
         "in_position_deg = 0.1\nsettle_timeout_s = 1.5\n[controller.servo]\nmode = 'fixed'\nfeedforward = 'measured'\n"
         "velocity_feedforward = 0.9\nacceleration_feedforward = 0.8\nspring_compensation = 0.1\n"
         "gravity_compensation = 0.5\nfriction_compensation = 0"
     )
     assert (read.interpolation_cost_us, read.axis_cost_us) == (2500, 500)
-    assert (read.load_mode, read.speed_shape) == ("replace", "trapezoid")
+    assert (read.load_mode, read.speed_shape, read.acceleration) == ("replace", "trapezoid", 0.4)
     assert (read.in_position, read.settle_timeout_us) == (0.1 * DEG, 1_500_000)
     servo = read.servo
     assert (servo.mode, servo.source) == ("fixed", "measured")
