@@ -41,7 +41,8 @@ def _acceleration(table: Table, name: str) -> float | str:
     if not table.holds(name, str):
         return table.number(name, positive=True, high=100.0)
     if (word := table.text(name)) != "max":
-        table.fail("RBL610", f"'{name}' is '{word}'; it must be a number of per cent or \"max\"", key=name)
+        hint = 'give a number above 0 to 100, per cent, or "max"'
+        table.fail("RBL610", f"'{name}' is '{word}', neither a number nor \"max\"", hint, key=name)
     return word
 
 
