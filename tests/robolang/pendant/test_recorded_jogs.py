@@ -26,6 +26,7 @@ LINES = st.lists(
         [
             "MOVE P1",
             "MOVE P2, SPEED 300, ZONE 20",
+            "MOVE P5, ACCEL MAX, ZONE 10",
             "MOVE P3 + (0, 0, 30), ACCEL 40",
             "MOVEJ P4, SPEED 35",
             "MOVEJ JOINT(0, 60, -170, 10, -60, 5)",
@@ -43,6 +44,7 @@ LINES = st.lists(
             "SPEEDJ 30",
             "OVERRIDE 60",
             "ACCEL 70",
+            "ACCEL MAX",
             "ZONE 15",
             "OUT(1) = 1",
             "PULSE 2, 0.1",
