@@ -233,10 +233,12 @@ class CartesianPlanner:
     def _piece_limits(self, curve: PathCurve, command: PathMove) -> SpeedLimits:
         """Return the bounds of the path parameter that a move runs with: under ``MAX`` those of its speeds alone."""
         assert curve.limits is not None  # it has something to do
+        if isinstance(curve.path, SplinePath):
+            # its bends and its turning bound it place by place (``runtime.motion.chain.curved``)
+            return bound([along_limits(curve.path, command, self._spec.path)], self._profile.speed_shape)
         if command.acceleration < MAX:
             return curve.limits
-        path = curve.path
-        return speed_limits(path, command, self._spec.path, self._profile, curve.turn)
+        return speed_limits(curve.path, command, self._spec.path, self._profile, curve.turn)
 
     def curve(self, q_start: Array, command: PathMove, X_flange_tool: Array) -> PathCurve:
         """Return the curve of a move, at any path parameter, and its limits; arguments and faults of ``plan``."""
@@ -401,6 +403,20 @@ def speed_limits(
 
     ``wrist_turn`` rad is how far the wrist has to turn, for a move whose tool stays where it is.
     """
+    length, speed, acceleration, jerk = along_limits(path, command, robot)
+    share = command.acceleration
+    if not isinstance(path, LinePath) and share < MAX:
+        speed, acceleration = arc_limits(speed, acceleration, jerk, path.radius)
+    if isinstance(path, SplinePath) and share < MAX:
+        speed = min(speed, path.turning_speed(ACROSS * robot.rotation_acceleration * share))
+    turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)
+    # where only the wrist turns, it gets the limits of the tool's turning; the joints' own are checked afterwards
+    angle = wrist_turn if path.length < NOTHING_TO_DO and path.angle < NOTHING_TO_DO else path.angle
+    return bound([(length, speed, acceleration, jerk), (angle, *turning)], profile.speed_shape)
+
+
+def along_limits(path: Path, command: PathMove, robot: PathLimits) -> tuple[float, float, float, float]:
+    """Return length, speed, acceleration and jerk of a command along its path, without its bends; ``Fault`` RBL404."""
     share = command.acceleration
     if share != MAX:
         ACCEL.checked(share / PERCENT, ACCEL.high)
@@ -412,13 +428,4 @@ def speed_limits(
     elif command.speed is not None:
         speed = command.speed
         SPEED.checked(speed / MM, robot.max_speed / MM)
-    acceleration, jerk = robot.acceleration * share, robot.jerk * share
-    if not isinstance(path, LinePath) and share < MAX:
-        speed, acceleration = arc_limits(speed, acceleration, jerk, path.radius)
-    if isinstance(path, SplinePath) and share < MAX:
-        speed = min(speed, path.turning_speed(ACROSS * robot.rotation_acceleration * share))
-    position = (path.length, speed, acceleration, jerk)
-    turning = (robot.rotation_speed, robot.rotation_acceleration * share, robot.rotation_jerk * share)
-    # where only the wrist turns, it gets the limits of the tool's turning; the joints' own are checked afterwards
-    angle = wrist_turn if path.length < NOTHING_TO_DO and path.angle < NOTHING_TO_DO else path.angle
-    return bound([position, (angle, *turning)], profile.speed_shape)
+    return path.length, speed, robot.acceleration * share, robot.jerk * share

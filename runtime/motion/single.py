@@ -3,8 +3,9 @@
 The profile of its programmed speed is tried first: where its set-points keep the speed, acceleration and jerk of all
 joints it is the fastest that keeps those of the path. Where they pass one, or where no acceleration of the path is
 programmed (``ACCEL MAX``), the move is timed place by place as a chain of one (``paced``): it is slow where a joint
-binds, and nowhere else. A move that a joint would have to slow by more than ``MOST_SLOWDOWN`` at some place is refused:
-it runs too close to a singularity. Called by the planners of all moves; units rad, s.
+binds, and nowhere else. So is a spline, whose profile is that of its tightest bend, where this is faster. A move that a
+joint would have to slow by more than ``MOST_SLOWDOWN`` at some place is refused: it runs too close to a singularity.
+Called by the planners of all moves; units rad, s.
 """
 
 import math
@@ -20,6 +21,7 @@ from runtime.motion.chain.paced import ChainLimits, paced
 from runtime.motion.chain.piece import Piece
 from runtime.motion.chain.timing import SLACK
 from runtime.motion.path_ik import MOST_SLOWDOWN, Arm, check_range
+from runtime.motion.spline_path import SplinePath
 
 Rows: TypeAlias = tuple[Array, Array]
 """Path parameters s (K + 1,) and joints q (K + 1, n) rad, one row a cycle."""
@@ -61,13 +63,16 @@ def single(
     needed = _needed(curve, piece, q, limits)
     kind, axis = (int(each) for each in np.unravel_index(int(np.argmax(needed)), needed.shape))
     worst = float(needed[kind, axis])
-    if piece.acceleration < math.inf and worst <= SLACK:
+    keeps = piece.acceleration < math.inf and worst <= SLACK
+    if keeps and not isinstance(piece.path, SplinePath):
         return s, q, None
     check_passable(curve, piece, programmed, limits)
     try:
         found = paced(ChainPath(arm, [piece], []), limits)
     except Fault:
         curve.refuse_singular(s, q, axis)
+    if keeps and len(found.x) >= len(s):
+        return s, q, None
     check_range(arm, found.x, found.q)
     slower = not worst <= SLACK and len(found.x) > len(s)
     slowdown = Slowdown(factor=(len(found.x) - 1) / (len(s) - 1), axis=axis, quantity=QUANTITIES[kind])

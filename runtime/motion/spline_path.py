@@ -103,6 +103,20 @@ class SplinePath:
         """The smallest radius of curvature, m."""
         return 1.0 / self.bend if self.bend > 0.0 else math.inf
 
+    def largest_about(self, s: Array) -> tuple[Array, Array, Array]:
+        """Return the largest curvature, 1/m, rate of turning, rad/m, and its derivative, rad/m2, about shares s (N,).
+
+        Each (N,), between the share before and the one after it; s rises.
+        """
+        fine = _fine(self.curve)
+        at = np.interp(fine, self.curve.nodes, self.curve.lengths) / self.length
+        low = np.maximum(np.searchsorted(at, np.append(s[:1], s[:-1])) - 1, 0)
+        high = np.minimum(np.searchsorted(at, np.append(s[1:], s[-1:]), side="right") + 1, len(at) - 1)
+        edges = np.stack([low, np.maximum(high, low + 1)], axis=1).ravel()
+        # of two edges in a row the first part is between them, and the second one of no interest
+        bend, rate, gain = (np.maximum.reduceat(np.append(each, 0.0), edges)[::2] for each in _sizes(self.curve, fine))
+        return bend, rate, gain
+
     def turning_speed(self, acceleration: float) -> float:
         """Return the speed m/s on the curve at which its turning alone takes an angular ``acceleration``, rad/s2."""
         return math.sqrt(acceleration / self.gain) if self.gain > 0.0 else math.inf
@@ -232,13 +246,23 @@ def _point(number: int) -> str:
 
 def _largest(curve: Spline) -> tuple[float, float, float]:
     """Return the largest curvature, the largest rate of turning and its largest derivative, by length."""
-    nodes = curve.nodes
-    u = np.append((nodes[:-1] + np.linspace(0.0, 0.75, 4)[:, None] * np.diff(nodes)).ravel(), nodes[-1])
-    first, second = curve.by_length(u)
-    q = curve.at(u)[0][:, 3:]
-    turning, change = _turning(q, first[:, 3:], second[:, 3:])
-    bend, rate, gain = (float(np.linalg.norm(each, axis=1).max()) for each in (second[:, :3], turning, change))
+    bend, rate, gain = (float(each.max()) for each in _sizes(curve, _fine(curve)))
     return bend, rate, gain
+
+
+def _fine(curve: Spline) -> Array:
+    """Return places u (N,), several in every step of a curve, rising."""
+    nodes = curve.nodes
+    between = nodes[:-1, None] + np.linspace(0.0, 0.75, 4) * np.diff(nodes)[:, None]
+    return np.append(between.ravel(), nodes[-1])
+
+
+def _sizes(curve: Spline, u: Array) -> tuple[Array, Array, Array]:
+    """Return curvature, rate of turning and its derivative (N,) at u (N,), by length."""
+    first, second = curve.by_length(u)
+    turning, change = _turning(curve.at(u)[0][:, 3:], first[:, 3:], second[:, 3:])
+    bend, rate, gain = (np.linalg.norm(each, axis=1) for each in (second[:, :3], turning, change))
+    return np.asarray(bend), np.asarray(rate), np.asarray(gain)
 
 
 def _turning(q: Array, dq: Array, ddq: Array) -> tuple[Array, Array]:

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.chain.chain_path import ChainPath, ToolLimits
+from runtime.motion.chain.curved import curved
 from runtime.motion.chain.piece import Piece
 from runtime.motion.chain.timing import Limits, Path, Timed, timed
 from runtime.motion.speed_cap import PLANNED, SpeedCap
@@ -70,6 +71,7 @@ def paced(path: ChainPath, limits: ChainLimits) -> Timed:
     overrides = np.array([piece.override for piece in pieces])
     tool = _tool_limits(pieces, limits, number)
     bounds = path.bounds((limits.joints.speed, limits.joints.acceleration), tool, overrides)
+    bounds = bounds.replaced(np.minimum(bounds.fastest, curved(path, tool, limits.path.rotation_speed)))
     mean_s = limits.mean_s(pieces)
     slower, under = np.ones(len(pieces)), 1.0
     for _ in range(_TIMES):

@@ -267,6 +267,49 @@ def test_acceleration_and_that_of_turning_keep_the_limits_where_the_curve_is_tig
     assert felt <= 0.3 * robot.spec.path.rotation_acceleration * 1.25
 
 
+def along(offsets, **options):
+    """The plan of a spline through places off the tool's, m, its steps, m/s, and their changes, m/s2."""
+    robot = bench("irb2400")
+    q = robot.home()
+    X = robot.tool(q)
+    points = [pose(X[:3, 3] + np.array(each), X[:3, :3]) for each in offsets]
+    found = robot.planner.plan(q, MoveSpline(X_through=tuple(points[:-1]), X_world_tool=points[-1], **options), TOOL)
+    places, period_s = robot.tool(found.q)[:, :3, 3], robot.profile.period_s
+    return found, *(np.linalg.norm(np.diff(places, k, axis=0), axis=1) / period_s**k for k in (1, 2))
+
+
+@together(
+    "offsets", [[(0.0, 0.1, 0.0), (0.0, 0.0, 0.0)], [(0, 0.15, 0), (0, 0.155, 0.005), (0, 0.15, 0.01), (0, 0, 0.01)]]
+)
+def test_a_spline_is_slow_where_it_bends_and_nowhere_else(offsets):
+    found, speed, felt = along(offsets, speed=0.2)
+    limit = bench("irb2400").spec.path.acceleration
+    assert felt.max() <= limit * (1 + 1e-6)
+    tight = math.sqrt(limit * found.path.radius)
+    assert tight < 0.1
+    middle = len(speed) // 2
+    assert speed[middle - 3 : middle + 3].max() < 1.1 * tight
+    assert np.count_nonzero(speed > 0.198) > 0.4 * len(speed)
+
+
+def test_a_curve_that_bends_ever_anew_keeps_the_acceleration_of_the_tool():
+    offsets = [(0.015, 0.054, -0.008), (0.008, 0.083, -0.033), (-0.002, 0.113, -0.014), (0.0, 0.126, -0.07)]
+    _, _, felt = along([*offsets, (0.032, 0.096, -0.123)], speed=1.0, acceleration=0.5)
+    assert felt.max() <= 0.5 * bench("irb2400").spec.path.acceleration * 1.01
+
+
+def test_the_wrist_may_change_on_a_spline():
+    """To the same pose with the other sign of J5: the wrist leaves the posture, the tool point stays on the curve."""
+    robot, offsets = bench("irb2400"), [(0.0, 0.06, 0.05), (0.0, 0.18, 0.05), (0.0, 0.25, 0.0)]
+    kept = along(offsets)[0]
+    target = kept.q[-1] + [0.0, 0.0, 0.0, -np.pi, -2.0 * kept.q[-1][4], np.pi]
+    left = along(offsets, q_end=target, speed=0.1)[0]
+    assert kept.wrist is None and left.wrist is not None
+    np.testing.assert_allclose(left.q[-1], target, atol=1e-12)
+    assert left.path.deviation(robot.tool(left.q)[:, :3, 3]).max() < 1e-9
+    assert limits_broken(robot, left.q) == []
+
+
 def test_speed_and_override_of_a_spline_are_those_of_its_tool_point():
     for override in (1.0, 0.5):
         found, robot = planned("irb2400", override=override, speed=0.1, turn=0.0), bench("irb2400")
