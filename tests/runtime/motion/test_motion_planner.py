@@ -10,7 +10,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about
 from runtime.motion.cartesian_planner import EXCEPTION, CartesianPlanner
 from runtime.motion.chain.timing import Timed, timed
-from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear
+from runtime.motion.commands import MAX, Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.motion_planner import ChainFault, ChainPlan
 from tests.runtime.motion.motions import (
     ON_PATH,
@@ -394,3 +394,18 @@ def test_a_chain_that_takes_longer_than_its_moves_alone_stops_at_its_corners(mon
     found = chain(robot, commands)
     assert [corner.cycles for corner in found.corners] == [0]
     assert len(found.q) - 1 == sum(len(part.plan.q) - 1 for part in found.parts)
+
+
+@pytest.mark.parametrize("name", ROBOTS)
+def test_more_acceleration_and_the_trapezoid_are_never_slower(name):
+    """ACCEL 50, 75, 100 and MAX in this order, each with and without a limit of jerk."""
+    smooth, hard = bench(name), bench(name, "trapezoid")
+    X = smooth.tool(smooth.home())
+    for step in ((0.0, 0.02, 0.01), (0.0, 0.2, -0.05)):
+        end = pose(X[:3, 3] + np.array(step), X[:3, :3])
+        moves = [MoveLinear(X_world_tool=end, speed=0.8, acceleration=share) for share in (0.5, 0.75, 1.0, MAX)]
+        cycles = [[len(robot.planner.plan(robot.home(), each, TOOL).q) for each in moves] for robot in (smooth, hard)]
+        assert [sorted(row, reverse=True) for row in cycles] == cycles
+        assert (np.array(cycles[1]) < np.array(cycles[0])).all()
+        assert cycles[0][0] > cycles[0][2]
+        assert limits_broken(hard, hard.planner.plan(hard.home(), moves[-1], TOOL).setpoints) == []
