@@ -136,8 +136,8 @@ class PlanFindings:
         elif not corner.reach > 0.0:
             yield PlanFinding(
                 code="RBL414",
-                message=f"{_zone(corner)} leaves no room for a blend: the arm stops at the corner",
-                hint="Make the moves at the corner longer, or write FINE where the stop is meant.",
+                message=f"{_zone(corner)} leaves no room for a blend that is faster than a stop: the arm stops there",
+                hint="Make the zone larger or the moves at the corner longer, or write FINE where the stop is meant.",
             )
         else:
             yield from self._short_path(move.plan, corner, after)
