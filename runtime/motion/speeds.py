@@ -68,6 +68,13 @@ class Speeds:
         self.times = MoveTimes(chain, commands, planner.spec.path, limits.joints.period_s, override)
         """The times of the moves."""
 
+    def __eq__(self, other: object) -> bool:
+        # plans are kept and never changed: a run that is taken back comes to the same one again
+        return isinstance(other, Speeds) and self._chain is other._chain and self._cap == other._cap
+
+    def __hash__(self) -> int:
+        return hash((id(self._chain), self._cap))
+
     @cached_property
     def moves(self) -> tuple[Reached, ...]:
         """What became of the speed of each move."""
@@ -226,8 +233,16 @@ class Speeds:
         found = self._on_ramps(k, *(ramp for _, ramp in ramps))
         if found is not None:
             return found
-        corners = (self._in_corner(k, valley) for valley, _ in ramps if not pace[valley] > _SLOWER * pace[at])
-        return next(filter(None, corners), None) or self._short(k, [valley for valley, _ in ramps])
+        slow = (self._slow_place(k, valley) for valley, _ in ramps if not pace[valley] > _SLOWER * pace[at])
+        return next(filter(None, slow), None) or self._short(k, [valley for valley, _ in ramps])
+
+    def _slow_place(self, k: int, at: int) -> Why | None:
+        """Return why a ramp begins or ends at a slow place: a corner, or a limit within the move; None: a stop."""
+        span = self.times.spans[k]
+        corner = self._in_corner(k, at)
+        if corner is not None or self._stands(np.array([at]))[0] or not span.first <= at < span.last:
+            return corner
+        return self._at_limit(k, at) or self._at_slow_place(k, at)
 
     def _rises(self, k: int, at: int, beside: int) -> bool:
         """Return whether a move is faster in the cycle beside another one."""
