@@ -11,6 +11,10 @@ at these places, so the tool stays on the commanded path. Along it ``dq = q' rat
 d(rate)/dt``. The smallest K is taken for which joint speeds and accelerations stay within the robot's limits. A move
 that ends before any such stop would is left to end: it comes to rest by itself.
 
+Where the path bends and the move is at its limits already, no falling rate of that form may fit. Then the arm brakes as
+hard as the joints allow at each row (``_braked``): with b = rate^2 the least d(rate)/dt at which ``|q' d(rate)/dt + q''
+b|`` keeps the accelerations. There is one of 0 or less wherever the plan itself kept them.
+
 Called once by the interpolator when a stop is requested or an alarm is raised; rad, s.
 """
 
@@ -23,10 +27,18 @@ from runtime.motion.fine_interpolator import FineInterpolator, through
 _SHORTEST = 3
 _LONGEST = 250
 """Cycles of a stop: from 24 ms to 2 s at 8 ms."""
+_STILL = 1e-12
+"""Joints that move less in a row, rad, bound no braking."""
 _SLACK = 1.0 + 1e-9
 """A limit is kept when it is passed by no more than rounding."""
 _ROUGHER = 1.1
-"""Excess allowed over that of what was already sent, at the ticks that it still reaches."""
+"""Excess allowed over that of what was already sent too fast, at the ticks that it still reaches."""
+_SHARES = (0.95, 0.9, 0.8, 0.7, 0.6, 0.5)
+"""Shares of the accelerations that are tried for braking: set-points 8 ms apart follow the law only nearly."""
+_MEAN = 2
+"""Cycles before and after that a place of braking is the mean of."""
+_WORTH = 4
+"""Least cycles that braking has to save."""
 
 
 def stopping_rows(
@@ -92,17 +104,66 @@ def _stop(
     # what has been sent cannot be taken back. Under a seam sensor it may itself pass a limit (``seam.SPEED_SLACK``);
     # without this allowance no stop at all would be accepted there, and the arm would go on to the end of its move
     rough = _excess(fine, np.concatenate([sent, rows[at + 1 : at + 1 + len(sent)]]), limits)[:touched].max(initial=0.0)
+    allowed = 1.0 if rough <= _SLACK else _ROUGHER * rough
     cycles, best = _SHORTEST, None
     while cycles / 2.0 <= left and cycles <= _LONGEST:
         course = at + _progress(cycles)
         ratio = _excess(fine, np.concatenate([sent, on_curve(rows, course, sent[-1])]), limits)
-        worst = np.maximum(ratio[:touched].max() / np.maximum(1.0, _ROUGHER * rough), ratio[touched:].max(initial=0.0))
+        worst = np.maximum(ratio[:touched].max() / allowed, ratio[touched:].max(initial=0.0))
         if worst <= _SLACK:
             return course
         if best is None or badness(worst) < badness(best[0]):
             best = worst, course
         cycles += max(1, cycles // 8)  # by an eighth: some 40 candidates cover 3 to 250 cycles
-    return None if best is None or ends_at_rest else best[1]
+    if not ends_at_rest:
+        return None if best is None else best[1]
+    return _braked(rows, at, fine, limits)
+
+
+def _braked(rows: Array, at: int, fine: FineInterpolator, limits: tuple[Array, Array]) -> Array | None:
+    """Return the places (K,) of braking as hard as the joints allow after row ``at``; None where that saves nothing."""
+    sent = rows[np.maximum(np.arange(at - 3, at + 1), 0)]
+    for share in _SHARES:
+        course = _brake_course(rows, at, share * limits[1] * fine.period_s**2)
+        if course is None or len(course) + _WORTH > len(rows) - 1 - at:
+            continue
+        if _excess(fine, np.concatenate([sent, on_curve(rows, course, sent[-1])]), limits).max() <= _SLACK:
+            return course
+    return None
+
+
+def _brake_course(rows: Array, at: int, most: Array) -> Array | None:
+    """Return the places (K,) after row ``at`` with accelerations up to ``most`` (n,); None for a stop at the end."""
+    # it brakes after the rows that the mean reaches from here, and b falls from row to row
+    first = at + _MEAN
+    places, squares = [float(at), float(first)], [1.0, 1.0]
+    for k in range(first, len(rows) - 1):
+        along, across = 0.5 * (rows[k + 1] - rows[k - 1]), rows[k + 1] - 2.0 * rows[k] + rows[k - 1]
+        moving = np.abs(along) > _STILL
+        least = -(most[moving] / np.abs(along[moving])) - across[moving] / along[moving] * squares[-1]
+        gain = min(float(least.max(initial=-1.0)), 0.0)
+        if squares[-1] + 2.0 * gain <= 0.0:
+            places.append(k - 0.5 * squares[-1] / gain)
+            squares.append(0.0)
+            return _mean_course(np.array(places), np.sqrt(squares))
+        places.append(k + 1.0)
+        squares.append(squares[-1] + 2.0 * gain)
+    return None
+
+
+def _mean_course(places: Array, rate: Array) -> Array:
+    """Return the places (K,) of a law at whole cycles, each the mean of ``_MEAN`` before it and after it."""
+    lasts = 2.0 * np.diff(places) / (rate[:-1] + rate[1:])
+    times = np.concatenate([[0.0], np.cumsum(lasts)])
+    cycles = int(np.ceil(times[-1])) + _MEAN
+    asked = np.arange(1 - _MEAN, cycles + _MEAN + 1, dtype=np.float64)
+    k = np.clip(np.searchsorted(times, asked, side="right") - 1, 0, len(lasts) - 1)
+    passed = np.clip(asked, 0.0, times[-1]) - times[k]
+    found = places[k] + rate[k] * passed + 0.5 * (rate[k + 1] - rate[k]) / lasts[k] * passed**2
+    found += np.minimum(asked, 0.0)  # before it begins it moves on by a row a cycle
+    width = 2 * _MEAN + 1
+    course = sum(found[step : step + cycles] for step in range(width)) / width
+    return np.asarray(np.minimum(course, places[-1]))
 
 
 def _excess(fine: FineInterpolator, played: Array, limits: tuple[Array, Array]) -> Array:

@@ -213,11 +213,21 @@ def test_a_stop_may_take_all_of_which_the_neighbours_are_there(left):
     assert found[-1, 0] == pytest.approx(float(rows[40, 0]) + 0.5 * cycles * PERIOD, abs=1e-12)
 
 
-def test_a_stop_that_is_too_fast_on_its_way_is_none():
+def test_where_a_falling_rate_would_be_too_fast_on_its_way_the_arm_brakes_harder():
     """The joint gets faster along the path: a stop must not take it over its speed limit."""
     t = PERIOD * (np.arange(200) - 50)
     rows, acceleration = (0.9 * t + 7.5 * t**2)[:, None], np.array([25.0])
     stops = stopping_rows(rows, 50, fine(rows), np.array([10.0]), acceleration)
     assert len(stops) in CYCLES
     speed = largest(np.concatenate([rows[47:51], stops]))[0]
-    np.testing.assert_array_equal(stopping_rows(rows, 50, fine(rows), 0.9 * speed, acceleration), rows[51:])
+    braked = stopping_rows(rows, 50, fine(rows), 0.9 * speed, acceleration)
+    fastest, gained = largest(np.concatenate([rows[47:51], braked]))
+    assert fastest <= 0.9 * speed * (1 + 1e-9)
+    assert gained <= acceleration * (1 + 1e-9)
+    assert len(braked) < len(stops)
+    # on the curve at every cycle, and at rest
+    places = passes(rows[50], braked)[:, 0]
+    assert (np.diff(places) >= -1e-12).all()
+    assert rows[50, 0] < places[-1] < rows[62, 0]
+    # where the joint may not even be as fast as it is, nothing can be done but to go on
+    np.testing.assert_array_equal(stopping_rows(rows, 50, fine(rows), 0.5 * speed, acceleration), rows[51:])
