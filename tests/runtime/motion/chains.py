@@ -38,7 +38,7 @@ KINDS = ("fault", "limits", "range", "zone", "stop", "time")
 ZONES = ((0.0, 0.0), (5e-4, 5e-3), (5e-3, 0.03), (0.3, 0.3))
 """Ranges of zones, m: a stop, small, as long as short moves, and longer than any move."""
 LONGEST_M = 0.25
-JERK_HELD = False
+JERK_HELD = True
 """Whether the planner keeps the jerk of the joints, which is then judged with the other limits."""
 
 
