@@ -141,7 +141,7 @@ def _brake_course(rows: Array, at: int, most: Array) -> Array | None:
         along, across = 0.5 * (rows[k + 1] - rows[k - 1]), rows[k + 1] - 2.0 * rows[k] + rows[k - 1]
         moving = np.abs(along) > _STILL
         least = -(most[moving] / np.abs(along[moving])) - across[moving] / along[moving] * squares[-1]
-        gain = min(float(least.max(initial=-1.0)), 0.0)
+        gain = float(np.minimum(least.max(initial=-1.0), 0.0))
         if squares[-1] + 2.0 * gain <= 0.0:
             places.append(k - 0.5 * squares[-1] / gain)
             squares.append(0.0)

@@ -18,6 +18,7 @@ from tests.pages import blocks_of, follow
 from tests.robolang.view.browser import Tab, chromium
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
+INSPECT = "programs/shop/inspect.rbl"
 DEMO = "programs/pick_and_place.rbl"
 LINES = "programs/universal/lines.rbl"
 ROBOTS = {
@@ -132,13 +133,19 @@ def plot(work: Path) -> None:
     robolang("plot", work / "run.npz", "tool_error", "D:1", "-o", FOLDER / "plot.svg")
 
 
+def speed(work: Path) -> None:
+    """The speed of the tool along its path, beside the programmed one, where corners slow it."""
+    robolang("run", INSPECT, "--no-physics", "--quiet", "--log", work / "run.npz")
+    robolang("plot", work / "run.npz", "--along-path", "-o", FOLDER / "speed.svg")
+
+
 def tutorial(work: Path) -> None:
     """The job of the tutorial after its last step, by the commands of the page itself."""
     follow("".join(blocks_of("tutorial")), work)
     shutil.copy(work / "out" / "tutorial" / "post.png", FOLDER / "tutorial.png")
 
 
-PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, plan, live, robots, plot, tutorial)
+PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, plan, live, robots, plot, speed, tutorial)
 
 
 if __name__ == "__main__":
