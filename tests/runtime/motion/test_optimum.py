@@ -1,6 +1,6 @@
 """Straight moves with ``ACCEL MAX`` against the optimum of another library under the limits of the joints.
 
-Without a limit of jerk a move from rest to rest takes at most 1.10 of the time-optimal motion, and one cycle more, since
+Without a limit of jerk a move from rest to rest takes at most 1.10 of the time-optimal motion, and one cycle more since
 it takes whole cycles. The speed of the tool is bounded in both, as that of one more joint.
 """
 
