@@ -146,7 +146,7 @@ class Signals(Mapping[str, Array]):
             X = self._chain.flange(q[at : at + PIECE])
             tools = self._of_cycle("tool", first + at, first + at + len(X))
             # nearly always one tool, and then one product for all
-            for tool in np.unique(tools):
+            for tool in sorted(set(tools.tolist())):
                 rows = np.flatnonzero(tools == tool)
                 poses[at + rows] = matmul(X[rows], self._rows.tools[tool])
         return poses
@@ -166,7 +166,7 @@ class Signals(Mapping[str, Array]):
         cycles = ticks // self._rows.ticks_per_cycle
         tools = self._rows.read("tool", int(cycles[0]), int(cycles[-1]) + 1)[cycles - cycles[0]]
         with np.errstate(invalid="ignore", over="ignore"):
-            for tool in np.unique(tools):
+            for tool in sorted(set(tools.tolist())):
                 rows = np.flatnonzero(tools == tool)
                 points[rows] = self._chain.points(q[rows], self._rows.tools[tool][:3, 3])
         return points
