@@ -15,8 +15,11 @@ from runtime.control.recorder import Recorded
 from runtime.control.signals import Signals
 from runtime.core.frames import Array
 from runtime.core.units import DEG, MM, PERCENT
+from runtime.motion.path import Path
 from runtime.servo.motor import torque_limit
 
+_LAG = 8
+"""Cycles that the tool may come after the plan: two of the interpolator, one to be sent, those of the servo."""
 _PIECE = 8192
 """Ticks that are measured at once."""
 
@@ -110,7 +113,8 @@ class _Piece:
         found.torque_pct = _larger(found.torque_pct, self._torque_pct[span])
         if run.path is not None:
             # a seam sensor takes the tool off the programmed path on purpose, which is no error of the servo
-            off = run.path.deviation((self._p_tool - self._deviation[:, :3])[span])
+            points = (self._p_tool - self._deviation[:, :3])[span]
+            off = np.min([path.deviation(points) for path in _paths_about(run, run.path)], axis=0)
             found.path_mm = _larger(found.path_mm, off / MM)
         if run.seam is not None:
             deviation = self._deviation[span]
@@ -119,6 +123,23 @@ class _Piece:
         on = np.flatnonzero(self._wrist_mode[span]) + begin
         if len(on):
             found.wrist = (int(on[0]) if found.wrist is None else found.wrist[0], int(on[-1]))
+
+
+def _paths_about(run: StatementRun, path: Path) -> list[Path]:
+    """Return the path of a move with those of its chain that the tool may still be on, or on already."""
+    if run.speeds is None:
+        return [path]
+    parts = run.speeds.chain.parts
+    own = parts[run.at]
+    near = [path]
+    # the arm follows the rows of a plan some cycles later, and moves of a chain may be shorter than that
+    for step in (-1, 1):
+        at = run.at + step
+        while 0 <= at < len(parts) and parts[at].last >= own.first - _LAG and parts[at].first <= own.last + _LAG:
+            beside = parts[at].path
+            near += [] if beside is None else [beside]
+            at += step
+    return near
 
 
 def _ended_by(run: StatementRun, tick: int) -> bool:

@@ -2,8 +2,8 @@
 
 Joint errors compare the command that the servo received with the true link angles, at the same tick. ``tool error`` is
 the distance between the commanded and the true tool point, beyond the gear springs; ``path deviation`` is the distance
-of the true tool point from the straight segment of a MOVE, however far along it is. Everything but the wall times
-repeats exactly.
+of the true tool point from the path of its move, or of a move beside it in its chain, however far along it is.
+Everything but the wall times repeats exactly.
 """
 
 from collections.abc import Sequence

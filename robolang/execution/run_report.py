@@ -63,7 +63,7 @@ class StatementReport(dict[str, Any]):
     )
     tool_error_mm = Key[float | None]("Largest distance of the tool point from its command, mm.")
     path_deviation_mm = Key[float | None](
-        "Largest distance of the tool point from the straight line, mm; None where there is none."
+        "Largest distance of the tool point from the paths of this move and of those beside it, mm; None without one."
     )
     peak_torque_pct = Key[float | None]("Largest torque of a joint, % of its limit.")
     notes = Key[list[str]]("What there is to say of it.")

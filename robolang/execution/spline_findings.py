@@ -32,10 +32,10 @@ def spline_findings(path: SplinePath, names: Sequence[str]) -> Found:
 
 
 def _left_out(path: SplinePath, names: Sequence[str]) -> Found:
-    for number in range(2, len(names)):
+    for number, same in path.pairs:
         # two of one name are found without planning, and many write where the arm is as the first point
-        if number not in path.numbers and names[number].upper() != names[number - 1].upper():
-            message = f"{names[number]} is where {names[number - 1]} is: the curve passes it once"
+        if same > 0 and names[number].upper() != names[same].upper():
+            message = f"{names[number]} is where {names[same]} is: the curve passes it once"
             yield PlanFinding(code="RBL236", message=message, hint="Remove one of the two, or teach it anew.")
             return
 

@@ -62,7 +62,9 @@ class Speeds:
         override: float = 1.0,
         cap: float | None = None,
     ) -> None:
-        self._planner, self._chain, self._commands = planner, chain, commands
+        self._planner, self._commands = planner, commands
+        self.chain = chain
+        """The plan that is judged."""
         self._X_flange_tool, self._cap = X_flange_tool, cap
         limits = planner.limits
         self.times = MoveTimes(chain, commands, planner.spec.path, limits.joints.period_s, override)
@@ -70,10 +72,10 @@ class Speeds:
 
     def __eq__(self, other: object) -> bool:
         # plans are kept and never changed: a run that is taken back comes to the same one again
-        return isinstance(other, Speeds) and self._chain is other._chain and self._cap == other._cap
+        return isinstance(other, Speeds) and self.chain is other.chain and self._cap == other._cap
 
     def __hash__(self) -> int:
-        return hash((id(self._chain), self._cap))
+        return hash((id(self.chain), self._cap))
 
     @cached_property
     def moves(self) -> tuple[Reached, ...]:
@@ -124,14 +126,14 @@ class Speeds:
 
     @cached_property
     def _use(self) -> LimitUse:
-        spec, parts = self._planner.spec, self._chain.parts
-        number = self._chain.command[1:]
+        spec, parts = self._planner.spec, self.chain.parts
+        number = self.chain.command[1:]
         along = np.array([part.path is not None for part in parts])
         share = np.array([command.acceleration for command in self._commands])
         most = np.where(along, share, np.inf)
         taken = Taken(
-            q=self._chain.q,
-            setpoints=self._chain.setpoints,
+            q=self.chain.q,
+            setpoints=self.chain.setpoints,
             override=np.array([part.plan.override for part in parts])[number],
             acceleration=(spec.path.acceleration * most)[number],
             turning_speed=np.where(along, spec.path.rotation_speed, np.inf)[number],
@@ -166,7 +168,7 @@ class Speeds:
         )
 
     def _joint_move(self, k: int) -> bool:
-        return self._chain.parts[k].path is None
+        return self.chain.parts[k].path is None
 
     def _slow_places(self, k: int) -> NDArray[np.intp]:
         return self._valleys[self._joint_move(k)]
@@ -298,7 +300,7 @@ class Speeds:
         number = self._corner_at(at)
         if number is None:
             return None
-        corner, centre = self._chain.corners[number], self._corners[0][number]
+        corner, centre = self.chain.corners[number], self._corners[0][number]
         # a cycle more on either side: the slowest one may be half in the corner
         half = 0.5 * corner.cycles + 1.0
         inside = slice(max(int(centre - half), 0), min(int(centre + half) + 1, len(self._use.tool)))
@@ -333,7 +335,7 @@ class Speeds:
         return found if found.share >= _HALF else self._short(k, ())
 
     def _curved(self, k: int) -> bool:
-        path = self._chain.parts[k].path
+        path = self.chain.parts[k].path
         return path is not None and not isinstance(path, LinePath)
 
     def _anywhere(self, k: int) -> Why:
@@ -357,7 +359,7 @@ class Speeds:
     @cached_property
     def _stops(self) -> Array:
         """The continuous cycles at which the arm stands as programmed."""
-        spans, corners = self.times.spans, self._chain.corners
+        spans, corners = self.times.spans, self.chain.corners
         bounds = [stretch.start for stretch in self.times.stretches[1:]]
         meant = [spans[k].begins for k in bounds if not corners[k - 1].radius > 0.0]
         return np.array([0.0, *meant, len(self.times.x) - 1.0])
@@ -372,7 +374,7 @@ class Speeds:
 
         Less than 0 where no corner bends the path.
         """
-        corners = self._chain.corners
+        corners = self.chain.corners
         bends = [
             each.radius > 0.0 and (each.deviation > _STRAIGHT * each.reach or not each.reach > 0.0) for each in corners
         ]
@@ -394,7 +396,7 @@ class Speeds:
         middle = 0.5 * (self.times.x[at] + self.times.x[at + 1]) - self.times.ends[k]
         share = float(middle / self.times.extents[k])
         spec, limits = self._planner.spec, self._planner.limits.joints
-        part, speed = self._chain.parts[k], float(self._use.tool[at])
+        part, speed = self.chain.parts[k], float(self._use.tool[at])
         place = share if 0.0 <= share <= 1.0 else None
         return Reasons(part=part, command=self._commands[k], spec=spec, jerk=limits.jerk, speed=speed, at=place)
 

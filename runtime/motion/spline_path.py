@@ -53,9 +53,10 @@ class Swing:
 class SplinePath:
     """A move on ``curve``; ``points_at`` (K + 1,) shares of the path at its start and at each of its points.
 
-    ``numbers`` (K + 1,) says which of the given points these are, from 1, 0 the start. ``length`` m; ``angle`` rad is
-    what the tool would turn at the largest rate of its turning per length. ``bend`` 1/m and ``gain`` rad/m2: the
-    largest second derivatives of place and orientation by length, the first of which is the curvature.
+    ``numbers`` (K + 1,) says which of the given points these are, from 1, 0 the start; ``pairs`` which were left out:
+    its number, and that of the one before it at the same place. ``length`` m; ``angle`` rad is what the tool would turn
+    at the largest rate of its turning per length. ``bend`` 1/m and ``gain`` rad/m2: the largest second derivatives of
+    place and orientation by length, the first of which is the curvature.
     """
 
     X_start: Array
@@ -65,6 +66,7 @@ class SplinePath:
     curve: Spline
     points_at: Array
     numbers: tuple[int, ...]
+    pairs: tuple[tuple[int, int], ...]
     bend: float
     gain: float
     rpy: None = None
@@ -72,7 +74,7 @@ class SplinePath:
     @classmethod
     def through(cls, X_start: Array, X_points: Sequence[Array]) -> "SplinePath | None":
         """Return the curve from a pose (4, 4) through others, None where fewer than two are left; ``Fault`` RBL417."""
-        X, numbers = _distinct([X_start, *X_points])
+        X, numbers, pairs = _distinct([X_start, *X_points])
         if len(X) < 3:
             return None
         places = np.stack([each[:3, 3] for each in X])
@@ -94,6 +96,7 @@ class SplinePath:
             curve=curve,
             points_at=frozen(curve.at_points / curve.length),
             numbers=numbers,
+            pairs=pairs,
             bend=bend,
             gain=gain,
         )
@@ -205,17 +208,19 @@ class SplinePath:
         return self.curve.at(self.curve.parameter(np.asarray(s) * self.length))[0]
 
 
-def _distinct(X: Sequence[Array]) -> tuple[list[Array], tuple[int, ...]]:
-    """Return poses without those that are the one before them, and their numbers; ``Fault`` RBL417."""
-    kept = [0]
+def _distinct(X: Sequence[Array]) -> tuple[list[Array], tuple[int, ...], tuple[tuple[int, int], ...]]:
+    """Return poses without those that are the one before them, their numbers, and pairs at one place; RBL417."""
+    kept, pairs = [0], []
     # each is compared with the last one that is kept, so that many small steps do not add up to a gap
     for number in range(1, len(X)):
         if _moves(X[kept[-1]], X[number], f"from {_point(kept[-1])} to {_point(number)} of the spline"):
             kept.append(number)
+        else:
+            pairs.append((number, kept[-1]))
     if len(kept) > 1:
         # where the last one is left out: the move ends as taught, to the last bit
         kept[-1] = len(X) - 1
-    return [X[number] for number in kept], tuple(kept)
+    return [X[number] for number in kept], tuple(kept), tuple(pairs)
 
 
 def _moves(before: Array, after: Array, which: str) -> bool:
