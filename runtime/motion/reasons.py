@@ -17,6 +17,8 @@ _LEAST_TURN = 0.01 * DEG
 """A tool that turns less, rad, does not turn: where the path has no turn the wrist alone moves."""
 _MOVES = 1e-4
 """A tool point that moves less, m, stays in place."""
+_NEAR = 0.8
+"""Share of a limit below which it is hardly what bounds a move."""
 _KEPT = 0.95
 """A corner that reaches less of its zone is smaller than programmed."""
 
@@ -82,7 +84,7 @@ class Reasons:
     def of_length(self, between: bool) -> Why:
         """Return the reason for a move that is too short to gain its speed; ``between`` its own two stops."""
         path, share = self.part.path, self.command.acceleration
-        where = "between two stops" if between else "in the ramp of a stop"
+        where = "between two stops" if between else "in a ramp of the speed"
         if path is None:
             axis = int(np.argmax(np.abs(self._turns) / self.spec.per_axis("limits", "speed")))
             limits = self.spec.axes[axis].limits
@@ -148,12 +150,13 @@ class Reasons:
         # the override of a move lowers the speeds and no acceleration
         override = self.part.plan.override if limit.quantity == "speed" else 1.0
         under = f" under OVERRIDE {100.0 * override:g}" if override < 1.0 else ""
-        share = f"{100.0 * min(limit.share, 1.0):.0f} %"
-        return f"J{limit.axis + 1} takes {share} of its {limit.quantity} limit of {limits.kind.text(value)}{per}{under}"
+        return (
+            f"J{limit.axis + 1} {_share(limit)} of its {limit.quantity} limit of {limits.kind.text(value)}{per}{under}"
+        )
 
     def _of_path(self, limit: Limit) -> str:
         most = self.spec.path.acceleration * self.command.acceleration
-        return f"the tool point takes {100.0 * min(limit.share, 1.0):.0f} % of its acceleration of {most / MM:g} mm/s2"
+        return f"the tool point {_share(limit)} of its acceleration of {most / MM:g} mm/s2"
 
     @property
     def _place(self) -> str:
@@ -164,6 +167,12 @@ class Reasons:
         if path is None or path.length < _MOVES:
             return f", at {100.0 * self.at:.0f} % of the move"
         return f", {self.at * path.length / MM:.1f} mm from the start"
+
+
+def _share(limit: Limit) -> str:
+    """Return how much of a limit is taken; where that is little, that nothing else is nearer to its limit."""
+    taken = f"{100.0 * min(limit.share, 1.0):.0f} %"
+    return f"takes {taken}" if limit.share >= _NEAR else f"is the nearest to a limit, at {taken}"
 
 
 def _which(after: int) -> str:
