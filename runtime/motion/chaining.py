@@ -93,7 +93,7 @@ def _runs(
         found = paced(path, limits)
     except Fault:
         return [_alone(plan, arm, limits) for plan in plans]
-    # drafts are never longer than what they stand for
+    # but for splines, drafts are never longer than what they stand for
     if len(found.x) - 1 > sum(len(plan.q) - 1 for plan in plans):
         alone = [_alone(plan, arm, limits) for plan in plans]
         if len(found.x) - 1 > sum(len(run.q) - 1 for run in alone):
