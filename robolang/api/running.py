@@ -67,7 +67,7 @@ def plan(
     Raises ``ProgramError`` for a text with errors, ``FileFault`` or ``Fault`` for what cannot be used.
     """
     read = _runnable(read_project(program, files))
-    rehearsal = rehearse(read, most_us=_most_us(max_time_s))
+    rehearsal = rehearse(read, most_us=_most_us(max_time_s), every_round=max_time_s is not None)
     return Plan(
         ok=not rehearsal.preventing,
         seconds=rehearsal.total_us / 1e6,
@@ -109,7 +109,8 @@ def run(
     # before the planning, which takes its time
     row = None if until_line is None else stop_of(read.analysis, str(until_line))
     plans = PlanMemory(read)
-    refused = rehearse(read, plans=plans, most_us=most_us).preventing_within(most_us)
+    rehearsal = rehearse(read, plans=plans, most_us=most_us, every_round=most_us is not None)
+    refused = rehearsal.preventing_within(most_us)
     if refused:
         raise ProgramError(read, refused, planned=True)
     session = Session(

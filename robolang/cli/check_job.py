@@ -6,7 +6,7 @@ fixed. With ``--fix`` a program from stdin goes to stdout, corrected, and its re
 
 import json
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -172,13 +172,13 @@ def _examined_all(names: Sequence[str], job: Job, settings: Settings) -> list[_O
 
 def _planned_all(outcomes: Sequence[_Outcome], job: Job, settings: Settings) -> list[_Outcome]:
     """Add what the motion of each program shows, with progress on a terminal."""
-    from robolang.cli.check_motion import progress
+    from robolang.cli.planning_progress import planning
 
     found = []
-    with progress(len(outcomes)) as show:
+    with planning(len(outcomes)) as progress:
         for number, outcome in enumerate(outcomes):
-            show(number, outcome.checked.source.path)
-            found.append(_planned(outcome, job, settings))
+            progress.begin(number, outcome.checked.source.path)
+            found.append(_planned(outcome, job, settings, progress.planned))
     return found
 
 
@@ -232,7 +232,7 @@ def _selection(program: str, job: Job, settings: Settings) -> Selection:
     return Selection(layers=(settings.layer(Path(program).parent), job.layer))
 
 
-def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
+def _planned(outcome: _Outcome, job: Job, settings: Settings, tell: Callable[[int], None]) -> _Outcome:
     """Add what the motion of a program shows, and the table of what its lines take."""
     checked = outcome.checked
     if checked.analysis is None or checked.faults or outcome.before.name == STANDARD_INPUT:
@@ -241,7 +241,8 @@ def _planned(outcome: _Outcome, job: Job, settings: Settings) -> _Outcome:
 
     selection = _selection(checked.source.path, job, settings)
     try:
-        plan = planned(checked.analysis, job.max_cycle_s, settings.bounds(Path(checked.source.path).parent))
+        bounds = settings.bounds(Path(checked.source.path).parent)
+        plan = planned(checked.analysis, job.max_cycle_s, bounds, tell)
     except Fault as fault:
         return outcome.failing(*fault.all)
     return outcome.replaced(

@@ -3,9 +3,7 @@
 Imported with ``--motion`` only: it needs numpy, pinocchio and mujoco, which checking a text does not.
 """
 
-import sys
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from textwrap import wrap
@@ -44,19 +42,6 @@ _LIMITED = ("limited", "by")
 """The same of the column that stands there as well where a move does not reach its speed."""
 
 
-@contextmanager
-def progress(count: int) -> Iterator[Callable[[int, str], None]]:
-    """Yield a function that takes which of ``count`` programs is planned; on a terminal it shows a live line."""
-    # the name of a single program is known
-    if count < 2 or sys.stderr is None or not sys.stderr.isatty():
-        yield lambda number, name: None
-        return
-    from robolang.cli.console import Console
-
-    with Console(stderr=True).status("planning") as status:
-        yield lambda number, name: status.update(f"planning {safe(name)}, {number + 1} of {count}")
-
-
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Planned:
     """The findings in the motion of a program, the table of its times for people, and the same as plain JSON types.
@@ -73,15 +58,21 @@ class Planned:
     rehearsal: Rehearsal | None = None
 
 
-def planned(program: Analysis | str, max_cycle_s: float | None, bounds: Bounds = DEFAULTS) -> Planned:
+def planned(
+    program: Analysis | str,
+    max_cycle_s: float | None,
+    bounds: Bounds = DEFAULTS,
+    tell: Callable[[int], None] | None = None,
+) -> Planned:
     """Return the findings in the motion of a program, or of the file of one; ``Fault`` for files beside it.
 
+    ``tell`` takes the simulated time that is planned, us.
     What the cell makes an error of the text (a load, a tool or an input that it does not have) is among them.
     """
     project = load_project(program)
     if not project.ok:
         return Planned(diagnostics=project.diagnostics, warnings=project.cell.warnings)
-    explored = explore(project)
+    explored = explore(project, tell)
     found = findings(project, explored.rehearsal, max_cycle_s, explored.detours, bounds)
     rows = line_times(project, explored.rehearsal)
     return Planned(

@@ -46,9 +46,15 @@ def refuse(
     from robolang.core.diagnostics import Severity, render
 
     refuse_text(project, warnings=warnings)
+    from robolang.cli.planning_progress import planning
     from robolang.execution.dry_run import rehearse
 
-    rehearsal = rehearse(project, plans=plans, most_us=most_us)
+    with planning(quiet=not warnings) as progress:
+        progress.begin(0, project.source.path)
+        # a time that somebody chose to wait is run in full
+        rehearsal = rehearse(
+            project, plans=plans, most_us=most_us, every_round=most_us is not None, tell=progress.planned
+        )
     preventing = rehearsal.preventing_within(most_us)
     for item in preventing:
         show_finding(render(item, project.source))

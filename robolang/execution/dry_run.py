@@ -8,7 +8,7 @@ rehearsal: where the arm would be after it is not known.
 """
 
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -20,9 +20,9 @@ from robolang.execution.alarms import failure
 from robolang.execution.executor import Executor
 from robolang.execution.outlook import PlannedStep, waits
 from robolang.execution.plan_memory import PlanMemory
-from robolang.execution.status import ENDED
+from robolang.execution.repetition import NotedWorld, Repetition
+from robolang.execution.status import ENDED, State
 from robolang.execution.target import Requested, Untimed
-from robolang.execution.world import RobotWorld
 from robolang.interpreter.branch_oracle import Decisions
 from robolang.interpreter.effects import (
     Drain,
@@ -138,19 +138,30 @@ def motion_check(project: Project, plans: PlanMemory | None = None) -> tuple[Dia
 
 
 def rehearse(
-    project: Project, *, decisions: Decisions | None = None, plans: PlanMemory | None = None, most_us: int | None = None
+    project: Project,
+    *,
+    decisions: Decisions | None = None,
+    plans: PlanMemory | None = None,
+    most_us: int | None = None,
+    every_round: bool = False,
+    tell: Callable[[int], None] | None = None,
 ) -> Rehearsal:
     """Plan a checked program from its first statement to its last, or to what cannot be carried out.
 
     ``decisions`` may force conditions to another branch, ``plans`` may know plans already, ``most_us`` ends it earlier
-    than ``run_bounds``.
+    than ``run_bounds``. A loop that repeats itself for ever is planned for some rounds (RBL509); ``every_round``: up to
+    that time. ``tell`` is called again and again with the simulated time that is planned, us.
     """
     plans = plans or PlanMemory(project)
     most_us = run_bounds.MAX_RUN_US if most_us is None else most_us
     target = _DryRun(project, plans, most_us)
-    executor = Executor(project, target, decisions=decisions, most_us=most_us)
-    while executor.advance().state not in ENDED:
+    executor = _Executor(project, target, decisions=decisions, most_us=most_us)
+    repetition = executor.watched(target, every_round=every_round, tell=tell)
+    # paused where it repeats itself, and moves that were kept have come to their end
+    while executor.advance().state not in ENDED | {State.PAUSED}:
         pass
+    if repetition.found is not None and not target.refused:
+        target.fail(repetition.found)
     return Rehearsal(
         moves=tuple(target.moves),
         hands=tuple(target.hands),
@@ -164,6 +175,14 @@ def rehearse(
     )
 
 
+class _Executor(Executor):
+    def watched(self, target: "_DryRun", *, every_round: bool, tell: Callable[[int], None] | None) -> Repetition:
+        """Return what sees from now on whether the program repeats itself."""
+        found = Repetition(self.project.program, self._engine.machine, target, every_round=every_round, tell=tell)
+        self.stops_before = found
+        return found
+
+
 class _DryRun(Untimed):
     """The target of a rehearsal: its time goes on at once by the times of the plans."""
 
@@ -171,10 +190,11 @@ class _DryRun(Untimed):
         cell = project.cell
         self._period_us, self._plans, self._most_us = project.profile.period_us, plans, most_us
         self.time_us = 0
-        self.world = RobotWorld(project.points, cell, plans.kinematics, lambda: self.time_us)
+        self.world = NotedWorld(project.points, cell, plans.kinematics, lambda: self.time_us)
         self.statement: Origin | None = None
         self._X_flange_tool = cell.hand.X_flange_tool
         self._payload = NO_PAYLOAD
+        self.spent = 0
         self._q: Array = np.array(cell.home)
         self.moves: list[RehearsedMove] = []
         self.hands: list[RehearsedHand] = []
@@ -209,6 +229,7 @@ class _DryRun(Untimed):
             or (isinstance(effect, Drain) and isinstance(effect.node, Wait))
         ):
             self.runs[effect.line] += 1
+            self.spent += 1
 
     def rehearse(self, q_start: Array, command: Command) -> MovePlan:
         """Return the plan of a move."""

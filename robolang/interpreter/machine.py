@@ -357,11 +357,16 @@ class Machine:
         """The names of the main program, then of each CALL that has not come back, the innermost last."""
         return tuple(map(variables_of, self._run.scopes.stack))
 
+    @property
+    def loop(self) -> tuple[Origin, int] | None:
+        """The loop that goes on, and how often it has gone round; None: none does."""
+        return self._run.endless_loop()
+
     def too_long(self, running: Origin, seconds: float) -> ProgramFault:
         """Return the fault of a run that has not ended after so long, s: at its endless loop, else at what runs."""
         run = self._run
         message = f"the run is not over after {seconds:g} s of simulated time"
-        position, loop = run.cursor.position, run.endless_loop()
+        position, loop = run.cursor.position, self.loop
         waits = isinstance(position, Waiting) and position.node.span == running.span
         if isinstance(position, Waiting) and waits and seconds - position.began >= seconds / 2.0:
             message += f": this WAIT has not come true since {position.began:.3f} s"

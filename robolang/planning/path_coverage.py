@@ -9,7 +9,7 @@ Plans are remembered (``plan_memory``), so the part that a detour shares with an
 """
 
 from collections import deque
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 from robolang.core.source import Span
@@ -43,13 +43,13 @@ class Exploration:
     missed: tuple[Moving, ...]
 
 
-def explore(project: Project) -> Exploration:
-    """Rehearse a checked program on every branch that it may take."""
+def explore(project: Project, tell: Callable[[int], None] | None = None) -> Exploration:
+    """Rehearse a checked program on every branch that it may take; ``tell`` as of ``rehearse``."""
     # one branch at a time: all combinations are exponential, and a move depends on little but where it starts
     plans = PlanMemory(project)
     conditions = open_conditions(project.program)
     decisions = Decisions()
-    first = rehearse(project, decisions=decisions, plans=plans)
+    first = rehearse(project, decisions=decisions, plans=plans, tell=tell)
     taken: set[tuple[Span, bool]] = set()
     known: set[tuple[Span, bool]] = set()  # taken or queued: each branch is queued once, after the fewest others
     todo: deque[dict[Span, bool]] = deque()
@@ -63,7 +63,7 @@ def explore(project: Project) -> Exploration:
         taken.add(branch)  # also where a fault ends the detour before the condition
         # not patient: a WAIT for an input that never comes on this branch would last to the end of the detour
         decisions = Decisions(forced, patient=False)
-        rehearsal = rehearse(project, decisions=decisions, plans=plans, most_us=DETOUR_US)
+        rehearsal = rehearse(project, decisions=decisions, plans=plans, most_us=DETOUR_US, tell=tell)
         detours.append(Detour(rehearsal=rehearsal, forced=forced))
         taken |= _taken(decisions)
         _queue(todo, forced, conditions, known, decisions)

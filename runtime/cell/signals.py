@@ -157,6 +157,11 @@ class Signals:
             raise unknown_input(number, self._inputs)
         return self._forced[number] if number in self._forced else self._by_itself(spec, now_us)
 
+    def is_settled(self, number: int, now_us: int) -> bool:
+        """Return whether an input of the cell never changes by itself from now on."""
+        spec = self._inputs[number]
+        return spec.follows is None and spec.changes[-1][0] <= now_us
+
     def _by_itself(self, spec: InputSpec, now_us: int) -> float:
         if spec.follows is not None:
             # the whole history is kept: a delay may reach back further than the last change

@@ -228,7 +228,7 @@ register(
     Code(
         code="RBL509",
         name="run-too-long",
-        meaning="The run has reached the longest simulated time that is recorded.",
+        meaning="The run has reached the longest simulated time that is recorded, or a loop repeats itself for ever.",
         remedy="Let each loop end and give each WAIT a TIMEOUT, or divide the program; log and report are complete up "
         "to here.",
         endless=True,

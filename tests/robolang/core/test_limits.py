@@ -94,7 +94,7 @@ def test_simulated_time(tmp_path, monkeypatch, seconds, good):
 def test_no_handler_outlives_the_simulated_time(tmp_path, monkeypatch):
     monkeypatch.setattr(run_bounds, "MAX_RUN_US", 400_000)
     project = in_a_cell(tmp_path, "ON ERROR GOTO *H\n*TOP DELAY 0.08\nGOTO *TOP\n*H RESUME NEXT\n")
-    found = rehearse(project)
+    found = rehearse(project, every_round=True)
     assert [item.code for item in found.refused] == ["RBL509"]
     assert found.total_us == 400_000
 

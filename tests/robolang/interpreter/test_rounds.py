@@ -34,7 +34,7 @@ def test_a_run_and_its_rehearsal_name_what_does_not_end(name, tmp_path, monkeypa
     path = tmp_path / "p.rbl"
     path.write_text(text.replace("«", "").replace("»", ""))
     project = load_project(path)
-    (alarm,), (refused,) = Session(project, physics=False).run().alarms, rehearse(project).refused
+    (alarm,), (refused,) = Session(project, physics=False).run().alarms, rehearse(project, every_round=True).refused
     for found in (alarm, refused):
         assert (found.code, found.span.start, found.span.end) == ("RBL509", start, end), found
     assert alarm.message == refused.message
