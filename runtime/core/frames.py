@@ -29,6 +29,8 @@ that equals it, so rounding does not change which component leads."""
 _NO_ROTATION = 1e-200
 """Below this the sine of an angle has no direction; the angle is then zero to the last bit."""
 
+_EYE = np.eye(3)
+
 
 def frozen(values: ArrayLike) -> Array:
     """Return a read-only float64 copy, for arrays inside frozen data."""
@@ -39,10 +41,13 @@ def frozen(values: ArrayLike) -> Array:
 
 def skew(v: ArrayLike) -> Array:
     """Return the matrix ``[v]x`` with ``[v]x @ u = v x u``; v (..., 3) -> (..., 3, 3)."""
-    x, y, z = np.moveaxis(np.asarray(v, dtype=np.float64), -1, 0)
-    zero = np.zeros_like(x)
-    rows = [np.stack(row, axis=-1) for row in ((zero, -z, y), (z, zero, -x), (-y, x, zero))]
-    return np.stack(rows, axis=-2)
+    u = np.asarray(v, dtype=np.float64)
+    x, y, z = u[..., 0], u[..., 1], u[..., 2]
+    K = np.zeros((*u.shape, 3))
+    K[..., 0, 1], K[..., 0, 2] = -z, y
+    K[..., 1, 0], K[..., 1, 2] = z, -x
+    K[..., 2, 0], K[..., 2, 1] = -y, x
+    return K
 
 
 def rotation_about(k: ArrayLike, angle: ArrayLike) -> Array:
@@ -50,7 +55,7 @@ def rotation_about(k: ArrayLike, angle: ArrayLike) -> Array:
     K = skew(k)
     d = np.asarray(angle, dtype=np.float64)[..., None, None]
     # 2 sin^2(d/2) is 1 - cos(d) without the cancellation at small angles
-    return np.asarray(np.eye(3) + np.sin(d) * K + 2.0 * np.sin(d / 2.0) ** 2 * matmul(K, K))
+    return np.asarray(_EYE + np.sin(d) * K + 2.0 * np.sin(d / 2.0) ** 2 * matmul(K, K))
 
 
 def principal_axis(R_from: Array, R_to: Array) -> tuple[Array, float]:
@@ -109,8 +114,9 @@ def rotation_angles(R_a: Array, R_b: Array) -> Array:
 
 def rotation_from_rpy(rpy: ArrayLike) -> Array:
     """Return ``Rz(rz) @ Ry(ry) @ Rx(rx)``; rpy (..., 3) rad -> (..., 3, 3)."""
-    rx, ry, rz = np.moveaxis(np.asarray(rpy, dtype=np.float64), -1, 0)
-    x, y, z = np.eye(3)
+    angles = np.asarray(rpy, dtype=np.float64)
+    rx, ry, rz = angles[..., 0], angles[..., 1], angles[..., 2]
+    x, y, z = _EYE
     return np.asarray(matmul(rotation_about(z, rz), rotation_about(y, ry), rotation_about(x, rx)))
 
 

@@ -21,7 +21,7 @@ def axis_inertia(model: ArmModel, q: Array, axis: int) -> float:
 
 def axis_row(model: ArmModel, q: Array, axis: int) -> Array:
     """Return row ``axis`` of the mass matrix (n,), kg m2, without the rotor; D_i is its element ``axis``."""
-    return frozen(np.array(model.inertia_column(q, axis)))  # a copy: handed over through ITA
+    return frozen(model.inertia_column(q, axis))  # a copy: handed over through ITA
 
 
 def axis_gravity(model: ArmModel, q: Array, axis: int) -> float:

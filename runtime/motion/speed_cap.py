@@ -18,7 +18,7 @@ import numpy as np
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
-from runtime.core.linear import matmul
+from runtime.core.linear import cross, matmul
 from runtime.core.rounding import beside
 from runtime.core.units import MM
 from runtime.motion.fine_interpolator import FineInterpolator
@@ -46,7 +46,7 @@ def speeds(kinematics: Kinematics, q: Array, dq: Array, X_flange_tool: Array) ->
     J, R = kinematics.jacobian_and_rotation(q)
     twist = matmul(J, dq[..., None])[..., 0]
     lever = matmul(R, X_flange_tool[:3, 3])
-    tool = twist[..., :3] + np.cross(twist[..., 3:], lever)
+    tool = twist[..., :3] + cross(twist[..., 3:], lever)
     return np.asarray(np.sqrt(np.stack([(tool**2).sum(axis=-1), (twist[..., :3] ** 2).sum(axis=-1)])))
 
 

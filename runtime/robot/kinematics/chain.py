@@ -72,13 +72,14 @@ class Chain:
     def axis_frames(self, q: Array) -> Iterator[Array]:
         """Yield the frame of each axis, turned or slid, in the base frame (..., 4, 4)."""
         X = np.eye(4)
+        cosines, sines = np.cos(q), np.sin(q)
         for i, placement in enumerate(self.placements):
             X = matmul(X.reshape(-1, 4), placement).reshape(X.shape)  # one product for all postures
             if i in self.sliding:
                 X = _slid(X, q[..., i, None])
                 yield X
                 continue
-            c, s = np.cos(q[..., i])[..., None], np.sin(q[..., i])[..., None]
+            c, s = cosines[..., i, None], sines[..., i, None]
             x, y = X[..., :, 0], X[..., :, 1]
             # a rotation about z mixes the first two columns only: cheaper than a product with a matrix
             turned = np.empty((*q.shape[:-1], 4, 4))

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from runtime.core.frames import Array, frozen, is_half_turn
-from runtime.core.linear import matmul
+from runtime.core.linear import cross, matmul
 from runtime.core.units import DEG
 from runtime.robot.kinematics import opw
 from runtime.robot.kinematics.chain import Chain
@@ -249,4 +249,4 @@ def _slide(X_base_axis: Array) -> Array:
 def _twist(X_base_axis: Array, p_flange: Array) -> Array:
     """Return one column (..., 6) of the Jacobian: the flange's motion for 1 rad/s of an axis."""
     z, p = X_base_axis[..., :3, 2], X_base_axis[..., :3, 3]
-    return np.concatenate([np.cross(z, p_flange - p), z], axis=-1)
+    return np.concatenate([cross(z, p_flange - p), z], axis=-1)

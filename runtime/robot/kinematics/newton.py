@@ -24,7 +24,7 @@ import pinocchio as pin
 
 from runtime.core.decompositions import solve
 from runtime.core.frames import Array
-from runtime.core.linear import dot, matmul, norm
+from runtime.core.linear import cross, dot, matmul, norm
 
 TOLERANCE = 1e-10
 """A pose is met when position (m) and orientation (rad) are within this of it."""
@@ -66,6 +66,8 @@ class NewtonSolver:
         self._flange = pin.SE3(X_last_flange)
         self._data = self._model.createData()
         self._eye = np.eye(min(self.n, _DETERMINED))
+        # keeps the matrix invertible when the error, and with it the damping, is zero at a singularity
+        self._least = 1e-15 * self._eye
 
     def follow(self, X_base_flange: Array, q_start: Array) -> Array:
         """Return joint angles (..., n) for poses (..., 4, 4); NaN where they cannot be met.
@@ -141,7 +143,7 @@ class NewtonSolver:
         """Return position (3,) m and Jacobian (3, n), base frame, of a point ``offset`` (3,) m of the flange frame."""
         J = pin.computeJointJacobians(self._model, self._data, q)  # of the point at the base origin, base frame
         p = (self._data.oMi[self.n] * self._flange).act(offset)
-        return p, J[:3] + np.cross(J[3:], p, axis=0)
+        return p, J[:3] + cross(J[3:].T, p).T
 
     def _error(self, X_base_flange: Array, q: Array) -> Array:
         pin.forwardKinematics(self._model, self._data, q)
@@ -154,11 +156,10 @@ class NewtonSolver:
     def _step(self, q: Array, e: Array, mu: float) -> Array:
         J = self._jacobian(q)
         damped = mu * self._eye
-        # 1e-15 keeps the matrix invertible when the error, and with it the damping, is zero at a singularity
         if self.n < _DETERMINED:
-            dq = solve(matmul(J.T, J) + damped + 1e-15 * self._eye, matmul(J.T, e))
+            dq = solve(matmul(J.T, J) + damped + self._least, matmul(J.T, e))
         else:
-            dq = matmul(J.T, solve(matmul(J, J.T) + damped + 1e-15 * self._eye, e))
+            dq = matmul(J.T, solve(matmul(J, J.T) + damped + self._least, e))
         # shortened as a whole: its direction is that of the least squares
         largest = float(np.abs(dq).max())
         return np.asarray(dq if largest <= LARGEST_STEP else dq * (LARGEST_STEP / largest))
@@ -168,7 +169,7 @@ class NewtonSolver:
         J = pin.computeJointJacobians(self._model, self._data, q)  # of the point at the base origin, base frame
         p = (self._data.oMi[self.n] * self._flange).translation
         moved = np.array(J)
-        moved[:3] += np.cross(J[3:], p, axis=0)
+        moved[:3] += cross(J[3:].T, p).T
         return moved
 
     def _apart(self, q: Array, other: Array) -> float:

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from runtime.core.frames import Array
-from runtime.core.linear import matmul
+from runtime.core.linear import cross, matmul
 from runtime.core.units import GRAVITY
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import Payload
@@ -46,7 +46,7 @@ def wrist_load(kinematics: Kinematics, q: Array, payload: Payload) -> WristLoad:
     v, z = np.moveaxis(J[..., :3, :], -2, -1), np.moveaxis(J[..., 3:, :], -2, -1)
     r = matmul(R, payload.cog)[..., None, :]
     # one Jacobian serves both: the flange's, carried over to the centre of gravity
-    w = v + np.cross(z, r)
+    w = v + cross(z, r)
     own = matmul(R, payload.inertia, np.swapaxes(R, -1, -2))
     inertia = payload.mass * np.sum(w * w, axis=-1) + np.einsum("...ki,...ij,...kj->...k", z, own, z)
     return WristLoad(first=first, moment=payload.mass * GRAVITY * np.abs(w[..., 2]), inertia=inertia)

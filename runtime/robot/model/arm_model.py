@@ -44,6 +44,7 @@ class ArmModel(Stateful):
         self._bare_last = self._model.inertias[self.n].copy()
         self._zero = np.zeros(self.n)
         self._units = np.eye(self.n)
+        self._upper = np.triu(np.ones((self.n, self.n), dtype=bool))
 
     def set_payload(self, payload: Payload = NO_PAYLOAD, mode: LoadMode = "add") -> None:
         """Carry ``payload`` from now on: added to the last link, or in its place (``replace``)."""
@@ -68,8 +69,7 @@ class ArmModel(Stateful):
     def mass_matrix(self, q: Array) -> Array:
         """Return M (n, n), kg m2, symmetric."""
         M = pin.crba(self._model, self._data, q)  # fills the upper triangle only
-        upper = np.triu(M)
-        return np.asarray(upper + np.triu(M, 1).T)
+        return np.asarray(np.where(self._upper, M, M.T))
 
     def inertia_column(self, q: Array, axis: int) -> Array:
         """Return column ``axis`` of M (n,): the torques that accelerate that axis alone by 1 rad/s2, no gravity."""

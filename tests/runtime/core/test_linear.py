@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from runtime.core.decompositions import inverse_of, least_squares, solve, symmetric_eigen
-from runtime.core.linear import dot, matmul, norm
+from runtime.core.linear import cross, dot, matmul, norm
 
 RNG = np.random.default_rng(3)
 
@@ -36,6 +36,12 @@ def test_a_product_has_the_same_bytes_alone_and_in_a_stack():
     A, B = RNG.standard_normal((500, 4, 4)), RNG.standard_normal((4, 4))
     alone = np.array([matmul(each, B) for each in A])
     assert matmul(A, B).tobytes() == alone.tobytes()
+
+
+@pytest.mark.parametrize(("a", "b"), [((3,), (3,)), ((5, 3), (3,)), ((4, 5, 3), (4, 1, 3)), ((3,), (7, 3))])
+def test_vector_products_are_those_of_numpy_to_the_bit(a, b):
+    A, B = RNG.standard_normal(a), RNG.standard_normal(b)
+    assert cross(A, B).tobytes() == np.cross(A, B).tobytes()
 
 
 def test_several_factors_go_from_the_left():
