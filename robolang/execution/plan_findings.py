@@ -16,7 +16,7 @@ The plan that is checked is the plan that runs: ``robolang check --motion`` repo
 import numpy as np
 
 from robolang.execution.planned_move import Found, PlanFinding, PlannedMove
-from robolang.execution.speed_findings import slowed
+from robolang.execution.speed_findings import sentence, slowed, zone_remedy
 from robolang.execution.spline_findings import spline_findings
 from robolang.project.project import Project
 from robolang.syntax.ast import Spline
@@ -28,6 +28,7 @@ from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.corner import Corner
 from runtime.motion.commands import MoveJoint
 from runtime.motion.joint_planner import changed
+from runtime.motion.path import turn_between
 from runtime.motion.spline_path import SplinePath
 from runtime.motion.taught_end import as_taught
 from runtime.robot.kinematics.kinematics import Kinematics
@@ -38,8 +39,6 @@ SHARP = 10.0 * DEG
 """Paths that turn by less at a corner are pieces of one curve: smaller blends do not slow the tool, rad."""
 _KEPT = 0.95
 """A corner that reaches this share of its zone is as wide as programmed."""
-_NEAR = 1e-3
-"""Share of a path over which its direction is taken."""
 
 
 class PlanFindings:
@@ -131,13 +130,13 @@ class PlanFindings:
                 yield PlanFinding(
                     code="RBL414",
                     message="the arm stops at the end of this move: moves under a seam sensor do not blend",
-                    hint="Write FINE, or SEAM OFF before the move.",
+                    remedy="Write FINE, or SEAM OFF before the move.",
                 )
         elif not corner.reach > 0.0:
             yield PlanFinding(
                 code="RBL414",
                 message=f"{_zone(corner)} leaves no room for a blend that is faster than a stop: the arm stops there",
-                hint="Make the zone larger or the moves at the corner longer, or write FINE where the stop is meant.",
+                remedy=lambda: _room_for(move),
             )
         else:
             yield from self._short_path(move.plan, corner, after)
@@ -147,28 +146,28 @@ class PlanFindings:
 
         Where the paths go on nearly straight, as the pieces of a curve do, the tool is not kept from its speed by it.
         """
-        paths = [
-            (plan.path.length, which)
-            for plan, which in ((before, "to"), (after, "from"))
-            if plan.path is not None and not plan.path.length <= 0.0
-        ]
-        # for MOVEJ no length is known; a zone of half the path is not more than half, with the decimals of its points
-        kept = corner.reach >= _KEPT * corner.radius
-        if (
-            len(paths) == 2
-            and not kept
-            and not _bend(before, after) < SHARP
-            and not corner.radius <= 0.505 * min(paths)[0]
-        ):
-            short, which = min(paths)
+        first, second = before.path, after.path
+        # for MOVEJ no length is known
+        if first is None or second is None or corner.reach >= _KEPT * corner.radius:
+            return
+        short, which = sorted([(first.length, "to"), (second.length, "from")])[0]
+        # a zone of half the path is not more than half, with the decimals of its points
+        if short > 0.0 and not corner.radius <= 0.505 * short and not turn_between(first, second) < SHARP:
             yield PlanFinding(
                 code="RBL414",
                 message=f"{_zone(corner)} is more than half of the path {which} this corner, "
                 f"{short / MM:.1f} mm: the blend begins and ends within "
                 f"{corner.reach / MM:.1f} mm",
-                hint=f"Make the path {which} this corner {up(2.0 * corner.radius / MM):g} mm or longer; or write ZONE "
-                f"{down(corner.reach / MM):g}, which is kept.",
+                remedy=f"Make the path {which} this corner {up(2.0 * corner.radius / MM):g} mm or longer; or write "
+                f"ZONE {down(corner.reach / MM):g}, which is kept.",
             )
+
+
+def _room_for(move: PlannedMove) -> str:
+    """Return what lets the arm pass a corner at which it stops."""
+    wider = move.speeds.wider_zone(move.number)
+    zone = "make the moves at the corner longer" if wider is None else zone_remedy(wider)
+    return sentence(zone, "write FINE where the stop is meant")
 
 
 def _of_spline(move: PlannedMove) -> Found:
@@ -177,14 +176,6 @@ def _of_spline(move: PlannedMove) -> Found:
     # what is left of a move that was interrupted has other points than its statement
     if isinstance(path, SplinePath) and isinstance(node, Spline) and len(node.points) == len(move.effect.via) + 1:
         yield from spline_findings(path, ["the start", *map(print_expression, node.points)])
-
-
-def _bend(before: MovePlan, after: MovePlan) -> float:
-    """Return the angle, rad, between the end of one path and the start of the next."""
-    assert before.path is not None and after.path is not None
-    ends = before.path.points(np.array([1.0 - _NEAR, 1.0])), after.path.points(np.array([0.0, _NEAR]))
-    first, second = (points[1] - points[0] for points in ends)
-    return float(np.arctan2(np.linalg.norm(np.cross(first, second)), (first * second).sum()))
 
 
 def _zone(corner: Corner) -> str:

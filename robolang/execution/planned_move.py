@@ -1,6 +1,6 @@
 """A move with its plan, as what compares plan and program takes it, and what it finds."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
 
 from robolang.execution.target import Requested
@@ -56,11 +56,19 @@ def planned_moves(requested: Sequence[Requested], chain: ChainPlan, speeds: Spee
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlanFinding:
-    """A difference between a program and its motion; ``hint`` "": the remedy of the code."""
+    """A difference between a program and its motion.
+
+    ``remedy`` is what helps, or finds that by planning: for a finding that is shown alone. "": the remedy of the code.
+    """
 
     code: str
     message: str
-    hint: str = ""
+    remedy: str | Callable[[], str] = ""
+
+    @property
+    def hint(self) -> str:
+        """What helps; computed each time."""
+        return self.remedy if isinstance(self.remedy, str) else self.remedy()
 
 
 Found = Iterator[PlanFinding]

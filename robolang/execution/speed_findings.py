@@ -11,8 +11,11 @@ from runtime.core.rounding import beside, down, up
 from runtime.core.units import MM
 from runtime.motion.reached import Reached, Why
 from runtime.motion.speeds import REACHED
+from runtime.motion.wider_zones import WiderZone
 
 CODE = "RBL429"
+_AS_LONG = 1.02
+"""A time that is longer by less is as long."""
 
 
 def slowed(move: PlannedMove) -> Found:
@@ -35,10 +38,11 @@ def _of_time(move: PlannedMove, time_s: float, found: Reached) -> PlanFinding:
     seconds = round(found.seconds, 3)
     takes, programmed = beside(seconds, time_s / override)
     why = _why(found)
+    keeps = f"give TIME {up(seconds * override):g} or more"
     return PlanFinding(
         code=CODE,
         message=f"the move takes {takes} s, not the {programmed} s of TIME {time_s:g}{_under(move)}: {why.text}",
-        hint=f"Give TIME {up(seconds * override):g} or more; or {why.remedy}.",
+        remedy=lambda: sentence(keeps, *_remedies(move, why)),
     )
 
 
@@ -54,17 +58,44 @@ def _of_speed(move: PlannedMove, speed: float, found: Reached) -> PlanFinding:
     return PlanFinding(
         code=CODE,
         message=f"{reaches} SPEED {speed:g}{_under(move)}, and {takes_s}: {why.text}",
-        hint=f"{_lower(move, why, len(row) == 1)}; or {why.remedy}.",
+        remedy=lambda: sentence(*_remedies(move, why), _lower(move, why, len(row) == 1)),
+    )
+
+
+def sentence(*remedies: str) -> str:
+    """Return what helps as one sentence; "" is none."""
+    text = "; or ".join(filter(None, remedies))
+    return f"{text[:1].upper()}{text[1:]}."
+
+
+def _remedies(move: PlannedMove, why: Why) -> list[str]:
+    """Return a zone that makes the moves faster, where planning finds one; else what helps by the reason."""
+    wider = None if why.kind == "cusp" else move.speeds.wider_zone(move.number)
+    return [why.remedy] if wider is None else [zone_remedy(wider)]
+
+
+def zone_remedy(wider: WiderZone) -> str:
+    """Return a zone to give, and what it saves."""
+    shortest, longest = (f"{length / MM:.1f}" for length in (wider.shortest, wider.longest))
+    lengths = longest if shortest == longest else f"{shortest} to {longest}"
+    return (
+        f"give ZONE {wider.zone / MM:g} at the corners of these {wider.moves} moves of {lengths} mm, which then take "
+        f"{wider.seconds:.3f} s and not {wider.now_s:.3f} s"
     )
 
 
 def _lower(move: PlannedMove, why: Why, alone: bool) -> str:
-    """Return which SPEED to give: one that takes as long, where the limit does not hold at that speed as well."""
+    """Return which SPEED to give: one that planning keeps, where the limit does not hold at that speed as well."""
+    if why.kind == "cusp":  # it is slow there at any speed
+        return ""
     if alone and why.kind in ("turning", "radius"):
         keeps = move.speeds.times.slower(move.number)
-        if keeps > 0.0:
-            return f"Give SPEED {down(keeps / MM):g}, which takes as long"
-    return "Lower SPEED"
+        speed = down(keeps / MM) if keeps > 0.0 else 0.0
+        takes_s = move.speeds.seconds_at(move.number, speed * MM) if speed > 0.0 else None
+        if takes_s is not None:
+            longer = takes_s > move.reached.seconds * _AS_LONG + move.speeds.times.period_s
+            return f"give SPEED {speed:g}, which takes {f'{takes_s:.3f} s' if longer else 'as long'}"
+    return "lower SPEED"
 
 
 def _why(found: Reached) -> Why:

@@ -36,7 +36,7 @@ def _left_out(path: SplinePath, names: Sequence[str]) -> Found:
         # two of one name are found without planning, and many write where the arm is as the first point
         if same > 0 and names[number].upper() != names[same].upper():
             message = f"{names[number]} is where {names[same]} is: the curve passes it once"
-            yield PlanFinding(code="RBL236", message=message, hint="Remove one of the two, or teach it anew.")
+            yield PlanFinding(code="RBL236", message=message, remedy="Remove one of the two, or teach it anew.")
             return
 
 
@@ -56,5 +56,5 @@ def _swings(path: SplinePath, names: Sequence[str]) -> Found:
             code="RBL436",
             message=f"the curve goes {swing.distance / MM:.1f} mm off the straight line of {swing.chord / MM:.1f} mm "
             f"from {first} to {second}, where points are {nearest / MM:.1f} mm apart",
-            hint=f"Teach a point between {first} and {second}.",
+            remedy=f"Teach a point between {first} and {second}.",
         )

@@ -100,6 +100,7 @@ class _Moves:
         self._project = project
         self._places = Places(kinematics, project.profile.period_us)
         self._seen: set[tuple[object, ...]] = set()
+        self._told: set[tuple[str, Span]] = set()
 
     def refused(self, rehearsal: Rehearsal) -> Found:
         """Yield what ended a rehearsal, where the arm then was."""
@@ -156,7 +157,10 @@ class _Moves:
             after=None if move.corner is None or after is None else after.plan,
         )
         for found in self._plans.of(planned):
-            yield self._places.at(found.code, move, found.message).replaced(hint=found.hint)
+            # one of a code for a statement, of all rehearsals: what helps may be found by planning
+            if (found.code, move.effect.span) not in self._told:
+                self._told.add((found.code, move.effect.span))
+                yield self._places.at(found.code, move, found.message).replaced(hint=found.hint)
 
     def near_range(self, move: RehearsedMove) -> Found:
         """Report the joint that comes nearest to the end of its range."""

@@ -57,6 +57,9 @@ NOTHING_TO_DO = 1e-9
 FLATTEST = 1e-6
 """Least height of the triangle of start, via point and end over its longest side, m."""
 
+_AT_END = 1e-3
+"""Share of a path over which its direction at an end is taken."""
+
 FULL_CIRCLE = (
     "A full circle takes two MOVECs: one over a point of the circle to the point opposite to the start, and one over a "
     "point of the other half back to the start."
@@ -234,6 +237,13 @@ class ArcPath:
 
 
 Path: TypeAlias = LinePath | ArcPath | SplinePath
+
+
+def turn_between(before: Path, after: Path) -> float:
+    """Return the angle, rad, between the end of one path and the start of the next."""
+    ends = before.points(np.array([1.0 - _AT_END, 1.0])), after.points(np.array([0.0, _AT_END]))
+    first, second = (points[1] - points[0] for points in ends)
+    return math.atan2(norm(np.cross(first, second)), dot(first, second))
 
 
 def _shortest_turns(turn: float) -> tuple[float, ...]:

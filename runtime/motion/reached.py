@@ -3,9 +3,10 @@
 from dataclasses import dataclass
 from typing import Literal
 
-Kind = Literal["cap", "joint", "turning", "tool", "radius", "corner", "length"]
+Kind = Literal["cap", "joint", "turning", "tool", "radius", "cusp", "corner", "length"]
 """What keeps a move slow: the cap of MANUAL, a joint, the turning of the tool, the acceleration of the tool point or
-the radius of a curve that takes it, a corner between two moves, or a path that is too short to gain the speed."""
+the radius of a curve that takes it, a place at which a curve doubles back, a corner between two moves, or a path that
+is too short to gain the speed."""
 
 WORDS: dict[Kind, str] = {
     "cap": "MANUAL",
@@ -13,6 +14,7 @@ WORDS: dict[Kind, str] = {
     "turning": "turning",
     "tool": "tool accel.",
     "radius": "radius",
+    "cusp": "cusp",
     "corner": "corner",
     "length": "length",
 }

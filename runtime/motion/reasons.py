@@ -17,10 +17,10 @@ _LEAST_TURN = 0.01 * DEG
 """A tool that turns less, rad, does not turn: where the path has no turn the wrist alone moves."""
 _MOVES = 1e-4
 """A tool point that moves less, m, stays in place."""
+_LITTLE = 0.2
+"""Share of a limit below which it is none of the reason."""
 _NEAR = 0.8
 """Share of a limit below which it is hardly what bounds a move."""
-_KEPT = 0.95
-"""A corner that reaches less of its zone is smaller than programmed."""
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -47,8 +47,9 @@ class Reasons:
     speed: float
     at: float | None
 
-    def of(self, limit: Limit) -> Why:
-        """Return the reason for a limit that is taken within the move."""
+    def of(self, limit: Limit, corner: int | None = None) -> Why:
+        """Return the reason for a limit that is taken within the move, on the ramp of a corner that is after another
+        move, counted from this one; None: of none."""
         text, remedy = {
             "cap": self._cap,
             "joint": self._joint,
@@ -58,7 +59,7 @@ class Reasons:
         }[limit.kind](limit)
         return Why(
             kind=limit.kind,
-            text=text,
+            text=text if corner is None else f"{text}, on the ramp of the corner {_which(corner)}",
             remedy=remedy,
             axis=limit.axis if limit.kind == "joint" else None,
             quantity=limit.quantity,
@@ -74,12 +75,19 @@ class Reasons:
             remedy = "make the moves at the corner longer"
         else:
             text = f"the corner {where} is passed at {passed / MM:.1f} mm/s, where {self._taken(limit)}"
-            # a ZONE that is not kept would not be if it were larger
-            kept = corner.reach >= _KEPT * corner.radius
-            remedy = f"make its ZONE larger than {zone:g}" if kept else "make the moves at that corner longer"
+            # a wider ZONE that helps is found by planning (``wider_zones``)
+            remedy = "make the moves at that corner longer"
             if limit.kind == "tool" and self.command.acceleration < 1.0:
                 remedy += ", or ACCEL higher"
         return Why(kind="corner", text=text, remedy=remedy, share=limit.share, at=self.at)
+
+    def of_cusp(self) -> Why:
+        """Return that the curve doubles back at the place."""
+        where = self._place.removeprefix(",")
+        text = f"the curve doubles back{where}, and the tool is nearly at rest there (RBL437)"
+        return Why(
+            kind="cusp", text=text, remedy="teach points that lead round the turn, or write two moves", at=self.at
+        )
 
     def of_length(self, between: bool) -> Why:
         """Return the reason for a move that is too short to gain its speed; ``between`` its own two stops."""
@@ -134,8 +142,11 @@ class Reasons:
     def _radius(self, limit: Limit) -> tuple[str, str]:
         path = self.part.path
         assert path is not None and not isinstance(path, LinePath)
-        text = f"on a radius of {path.radius / MM:.1f} mm, {self._of_path(limit)} at {self.speed / MM:.1f} mm/s"
-        return text, "make the radius larger"
+        radius = path.radius / MM
+        on = f"on a radius of {radius:{'.1f' if radius >= 1.0 else '.2g'}} mm"
+        # a curve is slowed about its tightest place as well, where it takes next to nothing
+        taken = f", {self._of_path(limit)} at {self.speed / MM:.1f} mm/s" if limit.share >= _LITTLE else ""
+        return (f"{on}{taken}" if taken else f"the path bends {on}"), "make the radius larger"
 
     def _taken(self, limit: Limit) -> str:
         """Return in words what takes how much of its limit."""

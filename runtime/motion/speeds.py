@@ -5,18 +5,21 @@ that holds; a share of ``NEAR`` and more of a limit (``limit_use``) is at the li
 
     1  where it is fastest: the cap of MANUAL, the speed of a joint, the turning of the tool
     2  there, too: the acceleration or jerk of a joint or, on a bend, that of the tool; within a corner it is the corner
-    3  on the ramps that lead there: the acceleration or jerk of a joint, or the turning, oftener than the tool's own
-    4  where these ramps begin or end: a corner, or another slow place; else a stop: the path is too short
+    3  the ramps that lead there begin or end where a curve doubles back
+    4  on these ramps: the acceleration or jerk of a joint, or the turning, oftener than the tool's own
+    5  where these ramps begin or end: a corner, or another slow place; else a stop: the path is too short
 
 Computed when it is read first, for all moves of a chain in one call: only those who show it pay for it. m, rad, s.
 """
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.motion.commands import Command
 from runtime.motion.limit_use import QUANTITIES, LimitUse, Taken, limit_use
@@ -26,6 +29,8 @@ from runtime.motion.path import LinePath
 from runtime.motion.reached import Kind, Reached, Why
 from runtime.motion.reasons import Limit, Reasons
 from runtime.motion.speed_cap import PLANNED
+from runtime.motion.spline_path import SplinePath
+from runtime.motion.wider_zones import Row, WiderZone
 
 REACHED = 0.98
 """A speed is reached at this share of it: the rest is rounding to whole cycles, and nobody sees it."""
@@ -43,6 +48,8 @@ _EVEN, _LONG = 0.03, 0.4
 """Speeds within this share are alike, and those of this share of the time last: a peak between two ramps is shorter."""
 _STRAIGHT = 1e-3
 """Share of its reach by which a corner of two pieces of one line misses the corner, at most."""
+_CUSP = 1e-3
+"""A curve that doubles back within so many m of a slow place is slow for it."""
 _BESIDE = 2.0
 """Cycles beside a corner or a stop that belong to it."""
 
@@ -105,6 +112,22 @@ class Speeds:
 
     def _lost(self, k: int) -> float:
         return self.times.seconds(k) - self.times.expected_s[k]
+
+    def wider_zone(self, k: int) -> WiderZone | None:
+        """Return a zone that makes move ``k`` and those beside it faster, found by planning; None: none does."""
+        return Row.about(self._planner, self.chain, self._commands, self._X_flange_tool, k).wider()
+
+    def seconds_at(self, k: int, speed: float) -> float | None:
+        """Return the time, s, that a move between two stops takes with another SPEED, m/s; None: that is not kept."""
+        command = replace(self._commands[k], speed=speed)
+        override = self.times.override(k) / command.override
+        start, planner, X_flange_tool = self.chain.parts[k].plan.q[0], self._planner, self._X_flange_tool
+        try:
+            chain = planner.chain(start, [command], X_flange_tool, override)
+        except Fault:
+            return None
+        times = Speeds(planner, chain, [command], X_flange_tool, override).times
+        return None if times.late(0) else times.seconds(0)
 
     def late_for_time(self, k: int) -> bool:
         """Return whether a move with a TIME does not keep it; under a cap a TIME is not what is programmed."""
@@ -182,20 +205,33 @@ class Speeds:
         span, pace = self.times.spans[k], self._pace(k)
         at = span.first + int(np.argmax(pace[span.first : span.last]))
         if not fastest:
-            found = self._on_ramps(k, slice(span.first, at + 1), slice(at, span.last)) or self._slowest(k)
+            ramps = (slice(span.first, at + 1), slice(at, span.last))
+            found = self._at_cusp(k, self._slowest(k)) or self._on_ramps(k, *ramps) or self._why_slowest(k)
             if found is not None:
                 return found
         return self._at_limit(k, at) or self._from_beside(k, at)
 
-    def _slowest(self, k: int) -> Why | None:
+    def _why_slowest(self, k: int) -> Why | None:
         """Return why a move is slow at its slowest place beside stops; None: there is none."""
+        at = self._slowest(k)
+        return None if at is None else self._at_limit(k, at) or self._at_slow_place(k, at)
+
+    def _slowest(self, k: int) -> int | None:
+        """Return the cycle of the slowest place of a move beside stops; None: there is none."""
         span, pace, valleys = self.times.spans[k], self._pace(k), self._slow_places(k)
         near = valleys[(valleys >= span.first - 1) & (valleys <= span.last)]
         near = near[~self._stands(near)]
-        if not len(near):
+        return int(near[np.argmin(pace[near])]) if len(near) else None
+
+    def _at_cusp(self, k: int, *cycles: int | None) -> Why | None:
+        """Return that the curve of a move doubles back at one of some cycles; None: it does not."""
+        path = self.chain.parts[k].path
+        if not isinstance(path, SplinePath):
             return None
-        at = int(near[np.argmin(pace[near])])
-        return self._at_limit(k, at) or self._at_slow_place(k, at)
+        cusps = path.cusps()
+        reasons = (self._reason(k, at) for at in cycles if at is not None)
+        near = (each for each in reasons if each.at is not None and _is_near(cusps - each.at, _CUSP / path.length))
+        return next((each.of_cusp() for each in near), None)
 
     def _at_limit(self, k: int, at: int) -> Why | None:
         """Return the limit that is taken where move ``k`` is at a cycle; None: none is."""
@@ -222,21 +258,27 @@ class Speeds:
 
     def _from_beside(self, k: int, at: int) -> Why:
         """Return why a move is no faster at its fastest cycle: the ramps from there to slower places beside it."""
-        span, pace = self.times.spans[k], self._pace(k)
+        pace = self._pace(k)
         before, after = self._beside(k, at)
         if self._even(k, at, slice(before, after + 1)):
             return self._at_slow_place(k, at)
+        ramps = self._ramps(k, at, before, after)
+        valleys = [valley for valley, _ in ramps]
+        found = self._at_cusp(k, *valleys) or self._on_ramps(k, *(ramp for _, ramp in ramps))
+        if found is not None:
+            return found
+        slow = (self._slow_place(k, valley) for valley in valleys if not pace[valley] > _SLOWER * pace[at])
+        return next(filter(None, slow), None) or self._short(k, valleys)
+
+    def _ramps(self, k: int, at: int, before: int, after: int) -> list[tuple[int, slice]]:
+        """Return the slow places beside a cycle at which the speed does not rise, each with the ramp to it."""
+        span = self.times.spans[k]
         ramps = [
             (before, slice(max(before, span.first), at + 1)),
             (after, slice(at, min(after + 1, span.last))),
         ]
         # towards a side on which the speed still rises, as on the long ramp of short moves, nothing keeps it low
-        ramps = [ramp for ramp, beside in zip(ramps, (at - 1, at + 1), strict=True) if not self._rises(k, at, beside)]
-        found = self._on_ramps(k, *(ramp for _, ramp in ramps))
-        if found is not None:
-            return found
-        slow = (self._slow_place(k, valley) for valley, _ in ramps if not pace[valley] > _SLOWER * pace[at])
-        return next(filter(None, slow), None) or self._short(k, [valley for valley, _ in ramps])
+        return [ramp for ramp, beside in zip(ramps, (at - 1, at + 1), strict=True) if not self._rises(k, at, beside)]
 
     def _slow_place(self, k: int, at: int) -> Why | None:
         """Return why a ramp begins or ends at a slow place: a corner, or a limit within the move; None: a stop."""
@@ -293,7 +335,12 @@ class Speeds:
                 Limit(kind="turning", share=float(use.turning[1, ramp].max()), quantity="acceleration"),
                 turning,
             )
-        return self._reason(k, ramp.start + int(np.flatnonzero(cycles)[0])).of(limit)
+        pace = self._pace(k)
+        slower = ramp.start if pace[ramp.start] < pace[ramp.stop - 1] else ramp.stop - 1
+        beside = self._corner_at(slower)
+        return self._reason(k, ramp.start + int(np.flatnonzero(cycles)[0])).of(
+            limit, None if beside is None else beside - k
+        )
 
     def _in_corner(self, k: int, at: int, limit: Limit | None = None) -> Why | None:
         """Return a corner that keeps a move slow, with the limit that is taken there; None: the cycle is in none."""
@@ -329,7 +376,8 @@ class Speeds:
         if self._curved(k):
             span = self.times.spans[k]
             tightest = span.first + int(np.argmax(use.across[span.first : span.last]))
-            return self._reason(k, tightest).of(Limit(kind="radius", share=float(use.across[tightest])))
+            bent = Limit(kind="radius", share=float(use.across[tightest]))
+            return self._at_cusp(k, at) or self._reason(k, tightest).of(bent)
         found = self._anywhere(k)
         # the end of a ramp, where nothing takes much any more
         return found if found.share >= _HALF else self._short(k, ())
@@ -403,6 +451,10 @@ class Speeds:
 
 def _nothing() -> Reached:
     return Reached(programmed=None, reached=0.0, seconds=0.0, expected_s=0.0, why=None, of_joints=False)
+
+
+def _is_near(off: Array, within: float) -> bool:
+    return bool((np.abs(off) <= within).any())
 
 
 def _largest(shares: Array) -> tuple[int, float]:

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import NDArray
 
 import runtime.motion.codes  # noqa: F401 - registers what is raised here
 from runtime.core.faults import Fault
@@ -198,11 +199,18 @@ class SplinePath:
 
     def returns(self) -> tuple[int, ...]:
         """Return the numbers of the points near which the curve doubles back, so that the tool is slow there."""
-        nodes = self.curve.nodes
-        first = self.curve.at(nodes)[1][:, :3]
-        slow = nodes[~((first**2).sum(axis=1) >= SLOW**2)]
-        nearest: list[int] = np.abs(slow[:, None] - self.curve.knots).argmin(axis=1).tolist()
+        nodes = self.curve.nodes[self._still()]
+        nearest: list[int] = np.abs(nodes[:, None] - self.curve.knots).argmin(axis=1).tolist()
         return tuple(self.numbers[k] for k in sorted(set(nearest)))
+
+    def cusps(self) -> Array:
+        """Return the shares (N,) of the path at which the curve doubles back."""
+        return np.asarray(self.curve.lengths[self._still()] / self.length)
+
+    def _still(self) -> NDArray[np.bool_]:
+        """Return at which nodes of the curve the tool point hardly moves."""
+        first = self.curve.at(self.curve.nodes)[1][:, :3]
+        return np.asarray(~((first**2).sum(axis=1) >= SLOW**2))
 
     def _at(self, s: Array) -> Array:
         return self.curve.at(self.curve.parameter(np.asarray(s) * self.length))[0]

@@ -38,6 +38,12 @@ def both(tmp_path, text, points=""):
     return said
 
 
+def rehearsed(tmp_path, line):
+    """Return what the moves from a line on take, s."""
+    times = rehearse(load_project(tmp_path / "p.rbl")).times_us
+    return sum(us for at, us in times.items() if at >= line) / 1e6
+
+
 def only(tmp_path, text, points=""):
     ((code, line, message, hint),) = both(tmp_path, text, points)
     return code, line, message, hint
@@ -192,7 +198,12 @@ def test_moves_that_are_slow_for_their_corners_have_one_finding_with_what_helps(
     assert (programmed, others) == (300.0, 5.0)
     assert speed < 0.5 * programmed
     assert takes > SLOWED * expected
-    assert {"ZONE", "0.8"} <= fields(hint)
+    # what the hint says has been planned, and is so
+    zone, moves, _, _, then, now = numbers(hint)
+    assert (moves, now) == (6.0, pytest.approx(takes, abs=0.02))
+    assert (zone, then < 0.9 * now) == (5.0, True)
+    both(tmp_path, text.format(zone))
+    assert rehearsed(tmp_path, 5) == pytest.approx(then, abs=0.1)
     wide = both(tmp_path, text.replace("SPEED 300", "SPEED 60").format(4))
     assert [code for code, *_ in wide] == []
 
@@ -242,3 +253,41 @@ def test_a_spline_that_is_not_what_its_points_look_like_names_them(tmp_path):
     assert {line: code for line, (code, _) in found.items()} == {line: each[1] for line, each in expected.items()}
     for line, (_, _, point, sizes) in expected.items():
         assert point in found[line][1] and re.search(sizes, found[line][1])
+
+
+def test_a_speed_that_is_lost_where_a_curve_doubles_back_says_so(tmp_path):
+    """SPEED 106 was said to take as long, and the tool to take 0 % of its acceleration."""
+    points = ", ".join(f"A + ({y}, 0, 0)" for y in (40, 80, 40, 10))
+    found = {
+        code: (message, hint)
+        for code, _, message, hint in both(tmp_path, f"{START.format(0)}A = HERE\nSPLINE ({points}), SPEED 400\n")
+    }
+    assert set(found) == {"RBL429", "RBL437"}
+    message, hint = found["RBL429"]
+    assert {"RBL437", "mm"} <= fields(message)
+    assert "SPEED" not in hint and "%" not in message
+
+
+def test_no_zone_is_named_that_does_not_help(tmp_path):
+    """Corners of 90 deg whose zones are half of their moves already: what was said led from one code to the other."""
+    moves = "".join(f"MOVE P + (0, {5 * k}, {5 * (k % 2)}), ZONE 3.53\n" for k in range(1, 9))
+    text = f"{START.format(0)}SPEED 200\nP = HERE\n{moves}MOVE P + (0, 45, 5)\n"
+    code, _, message, hint = only(tmp_path, text)
+    assert (code, "ZONE" in hint) == ("RBL429", False)
+    assert "corner" in message
+    # where they leave room it is
+    code, _, _, hint = only(tmp_path, text.replace("3.53", "0.9"))
+    assert "ZONE 3.5 " in hint
+
+
+def test_a_zone_in_which_corners_overlap_is_named_for_a_curve_of_chords(tmp_path):
+    """Chords of 3.1 mm of a circle of 30 mm, which turn by 6 deg: zones of 1 mm leave a jerk in each corner."""
+    loop = "FOR I = 1 TO 28\nMOVE P + (0, 30 - 30 * COS(I * 6), 30 * SIN(I * 6)), ZONE {}\nNEXT\n"
+    text = f"{START.format(0)}SPEED 300\nP = HERE\n{loop}"
+    code, line, _, hint = only(tmp_path, text.format(0.8))
+    assert (code, line) == ("RBL429", 6)
+    zone, _, shortest, then, now = numbers(hint)
+    assert (shortest, then < 0.7 * now) == (3.1, True)
+    (tmp_path / "p.rbl").write_text(text.format(zone), "utf-8")
+    found = load_project(tmp_path / "p.rbl")
+    assert [item.code for item in findings(found, rehearse(found)) if item.code in OTHERWISE] == []
