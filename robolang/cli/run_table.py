@@ -14,7 +14,7 @@ from rich.table import Table
 from robolang.cli import lines, speed_cells
 from robolang.cli.console import Console
 from robolang.core.diagnostics import safe
-from robolang.execution.speed_keys import slowest
+from robolang.execution.speed_keys import of_runs
 from runtime.robot.model.estimated import decisive, groups
 
 
@@ -84,7 +84,7 @@ def _together(rows: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
     for column in (_TIMES, *_columns(rows)):
         numbers = [row[column.key] for row in rows if row[column.key] is not None]
         together[column.key] = column.of(numbers) if numbers else None
-    together |= slowest(rows)
+    together |= of_runs(rows)
     return {**together, "speed": speed_cells.cell(together), "notes": [note for row in rows for note in row["notes"]]}
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from robolang.execution.dry_run import Rehearsal, RehearsedMove
-from robolang.execution.speed_keys import NO_SPEED, slowest, speed_keys
+from robolang.execution.speed_keys import NO_SPEED, of_runs, speed_keys
 from robolang.project.project import Project
 from robolang.syntax.unparse import describe
 from runtime.core.frames import Array
@@ -19,7 +19,7 @@ class LineTime:
     """What a line of the program takes: how often it ran, its time s, the length of its paths mm, and the name of its
     fastest joint with the share of its speed limit in %; ``margin_deg``: the least distance of a joint from the ends of
     its range, ``margin_mm`` that of one that slides; ``wrist_deg``: how far the wrist is from straight, where it is
-    singular, on a path of the tool. The keys of ``speed_keys`` are those of the slowest run of the line."""
+    singular, on a path of the tool. The keys of ``speed_keys`` are those of several runs (``of_runs``)."""
 
     line: int
     number: int | None
@@ -36,6 +36,8 @@ class LineTime:
     reached_mm_s: float | None
     programmed_pct: float | None
     reached_pct: float | None
+    highest_mm_s: float | None
+    highest_pct: float | None
     limited_by: str | None
     limited_why: str | None
 
@@ -65,7 +67,7 @@ def line_times(project: Project, rehearsal: Rehearsal) -> list[LineTime]:
                 margin_deg=margin_deg,
                 margin_mm=margin_mm,
                 wrist_deg=_wrist_deg(opw, moves),
-                **slowest([speed_keys(move.speeds.moves[move.number]) for move in moves] or [NO_SPEED]),
+                **of_runs([speed_keys(move.speeds.moves[move.number]) for move in moves] or [NO_SPEED]),
             )
         )
     return rows

@@ -4,9 +4,10 @@ import json
 
 import pytest
 
+from robolang.cli.speed_cells import cell
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
-from robolang.execution.speed_keys import KEYS, NO_SPEED, slowest
+from robolang.execution.speed_keys import KEYS, NO_SPEED, of_runs
 from robolang.planning.line_times import line_times
 from robolang.project.project import load_project
 
@@ -64,5 +65,19 @@ def test_of_several_runs_a_limited_one_counts():
     fast = nothing | {"programmed_mm_s": 100.0, "reached_mm_s": 99.0}
     slow = nothing | {"programmed_mm_s": 200.0, "reached_mm_s": 199.0, "limited_by": "corner"}
     timed = nothing | {"reached_mm_s": 20.0}
-    assert slowest([fast, slow, timed]) == slow
-    assert slowest([timed, fast]) == fast
+    assert of_runs([fast, slow, timed]) == slow | {"highest_mm_s": 199.0, "highest_pct": None}
+    assert of_runs([timed, fast]) == fast | {"highest_mm_s": 99.0, "highest_pct": None}
+
+
+def test_of_many_runs_the_speeds_are_a_range_with_what_limits_most_of_them():
+    """A row of short moves showed the speed of its first ramp alone, which is none of its typical moves."""
+    ramp = dict(NO_SPEED) | {"programmed_mm_s": 400.0, "reached_mm_s": 49.0, "limited_by": "length"}
+    moves = [ramp | {"reached_mm_s": 300.0 + k, "limited_by": "corner", "limited_why": str(k)} for k in range(3)]
+    found = of_runs([ramp, *moves, ramp | {"reached_mm_s": 400.0, "limited_by": None}])
+    assert (found["reached_mm_s"], found["highest_mm_s"]) == (49.0, 400.0)
+    assert (found["limited_by"], found["limited_why"]) == ("corner", "0")
+    assert cell(found) == "49-400/400"
+    assert cell(ramp) == "49/400"
+    assert cell(of_runs([ramp, ramp])) == "49/400"
+    timed = dict(NO_SPEED) | {"reached_pct": 20.0}
+    assert cell(of_runs([timed, timed | {"reached_pct": 35.0}])) == "20-35 %"
