@@ -14,6 +14,7 @@ from pathlib import Path
 from PIL import Image
 
 from robolang.__main__ import main
+from tests.bench.corner_picture import corners
 from tests.pages import blocks_of, follow
 from tests.robolang.view.browser import Tab, chromium
 
@@ -139,13 +140,28 @@ def speed(work: Path) -> None:
     robolang("plot", work / "run.npz", "--along-path", "-o", FOLDER / "speed.svg")
 
 
+def corner(work: Path) -> None:
+    """A corner, and the corners of a curve of chords, as they are planned."""
+    (FOLDER / "corner.svg").write_text(corners(), "utf-8")
+
+
 def tutorial(work: Path) -> None:
     """The job of the tutorial after its last step, by the commands of the page itself."""
     follow("".join(blocks_of("tutorial")), work)
     shutil.copy(work / "out" / "tutorial" / "post.png", FOLDER / "tutorial.png")
 
 
-PICTURES: tuple[Callable[[Path], None], ...] = (page_of_a_run, two_runs, plan, live, robots, plot, speed, tutorial)
+PICTURES: tuple[Callable[[Path], None], ...] = (
+    page_of_a_run,
+    two_runs,
+    plan,
+    live,
+    robots,
+    plot,
+    speed,
+    corner,
+    tutorial,
+)
 
 
 if __name__ == "__main__":

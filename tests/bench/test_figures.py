@@ -9,11 +9,13 @@ from pathlib import Path
 from types import SimpleNamespace
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
 
 from tests.bench import (
     blend_campaign,
     check,
+    corner_picture,
     figures,
     frames,
     gcode_campaign,
@@ -128,6 +130,17 @@ def test_the_page_is_read_as_it_is_meant():
 
 def printed(row, smallest):
     return iter([row])
+
+
+def test_the_picture_of_corners_shows_paths_that_keep_their_zones():
+    panels = corner_picture.panels()
+    shown = ElementTree.fromstring(corner_picture.corners())
+    assert len([each for each in shown.iter() if each.tag.endswith("polyline")]) == 2 * len(panels)
+    for panel in panels:
+        corners, tool = panel.places[1:-1], panel.tool()
+        nearest = np.min(np.linalg.norm(tool[:, None] - corners, axis=2), axis=0)
+        # it misses each corner, by less than the zone
+        assert (nearest > 0.05).all() and (nearest < panel.zone).all(), panel.title
 
 
 @pytest.mark.parametrize("value", [float("nan"), float("inf")])
