@@ -169,8 +169,8 @@ register(
     Code(
         code="RBL414",
         name="blends-overlap",
-        meaning="A blend is smaller than its ZONE or does not take place: a move at the corner is too short, or "
-        "follows a seam sensor.",
+        meaning="A blend is smaller than its ZONE or does not take place: a move at the corner is too short, has no "
+        "length, or follows a seam sensor; or the next move goes back, so that the tool turns round before the point.",
         remedy="Make the ZONE smaller or the moves at the corner longer, or write FINE where the arm shall stop.",
         found=Stage.MOTION,
     ),

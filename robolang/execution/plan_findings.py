@@ -37,6 +37,8 @@ NOTICED = 0.1 * DEG
 """A tool or a joint that is turned less from where it should be keeps it, rad."""
 SHARP = 10.0 * DEG
 """Paths that turn by less at a corner are pieces of one curve: smaller blends do not slow the tool, rad."""
+REVERSES = 175.0 * DEG
+"""Paths that turn by more at a corner go back the line that they have come on, rad."""
 _KEPT = 0.95
 """A corner that reaches this share of its zone is as wide as programmed."""
 
@@ -132,6 +134,14 @@ class PlanFindings:
                     message="the arm stops at the end of this move: moves under a seam sensor do not blend",
                     remedy="Write FINE, or SEAM OFF before the move.",
                 )
+        elif len(after.q) == 1:
+            yield PlanFinding(
+                code="RBL414",
+                message="the arm stops at the end of this move: the next move ends where it begins, and has no length "
+                "to blend into",
+                remedy="Remove one of the two moves, or correct the point of the next one; write FINE where the stop "
+                "is meant.",
+            )
         elif not corner.reach > 0.0:
             yield PlanFinding(
                 code="RBL414",
@@ -139,7 +149,7 @@ class PlanFindings:
                 remedy=lambda: _room_for(move),
             )
         else:
-            yield from self._short_path(move.plan, corner, after)
+            yield from _turned_back(move.plan, corner, after) or self._short_path(move.plan, corner, after)
 
     def _short_path(self, before: MovePlan, corner: Corner, after: MovePlan) -> Found:
         """Find a zone that is more than half of a path at its corner: two blends would not fit on that.
@@ -161,6 +171,21 @@ class PlanFindings:
                 remedy=f"Make the path {which} this corner {up(2.0 * corner.radius / MM):g} mm or longer; or write "
                 f"ZONE {down(corner.reach / MM):g}, which is kept.",
             )
+
+
+def _turned_back(before: MovePlan, corner: Corner, after: MovePlan) -> list[PlanFinding]:
+    """Return that a tool which goes back the line that it has come on does not reach the point."""
+    first, second = before.path, after.path
+    if first is None or second is None or not turn_between(first, second) >= REVERSES:
+        return []
+    return [
+        PlanFinding(
+            code="RBL414",
+            message=f"the next move goes back: in {_zone(corner)} the tool turns round {corner.deviation / MM:.1f} mm "
+            "before the end of this move, and does not reach its point",
+            remedy="Write FINE at this move where the tool is to reach its point, or a smaller ZONE to come nearer.",
+        )
+    ]
 
 
 def _room_for(move: PlannedMove) -> str:

@@ -291,3 +291,19 @@ def test_a_zone_in_which_corners_overlap_is_named_for_a_curve_of_chords(tmp_path
     (tmp_path / "p.rbl").write_text(text.format(zone), "utf-8")
     found = load_project(tmp_path / "p.rbl")
     assert [item.code for item in findings(found, rehearse(found)) if item.code in OTHERWISE] == []
+
+
+def test_a_zone_says_what_becomes_of_a_point_that_is_doubled_or_returned_from(tmp_path):
+    moves = "P = HERE\nMOVE P + (0, 50, 0), ZONE 10\n{}\nMOVE P + (0, 50, 60), FINE\n"
+    text = f"{START.format(0)}SPEED 200\n{moves}"
+    doubled = only(tmp_path, text.format("MOVE P + (0, 50, 0), ZONE 10"))
+    assert doubled[:2] == ("RBL414", 5)
+    assert "FINE" in fields(doubled[3]) and "longer" not in doubled[3]
+    back = only(tmp_path, text.format("MOVE P + (0, 10, 0)"))
+    assert back[:2] == ("RBL414", 5)
+    # to within rounding it misses the point by so much
+    _, missed = numbers(back[2])
+    (corner,) = [each.corner for each in rehearse(load_project(tmp_path / "p.rbl")).moves if each.corner is not None]
+    assert missed == pytest.approx(corner.deviation * 1e3, abs=0.06)
+    assert missed > 1.0
+    assert both(tmp_path, text.format("MOVE P + (0, 50, 30)")) == []
