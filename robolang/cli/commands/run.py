@@ -64,7 +64,7 @@ def run(
         from robolang.project.project import load_project
 
         # planning a long program takes its time, and there is no session yet that a signal could stop
-        with handled(_left_before_motion):
+        with _before_motion():
             project = load_project(analysis, files.cell, files.robot, profile=controller.profile, options=settings)
             from robolang.execution.plan_memory import PlanMemory
 
@@ -137,7 +137,7 @@ def _ran(
             progress.err = output.as_json
             progress.follow(session.controller)
             # a page is waited for
-            with handled(_left_before_motion):
+            with _before_motion():
                 run_session = serving.enter_context(followed(session, pages, follow))
             if simulation.until_line is not None:
                 run_session = _until(session, simulation.until_line)
@@ -284,8 +284,20 @@ def _signals(session: "Session") -> Iterator[list[int]]:
         yield received
 
 
-def _left_before_motion(number: int, _frame: object) -> None:
-    """End the command while the program is read and its motion checked: there is nothing to stop and no log yet."""
-    name = signal.Signals(number).name
-    echo(f"stopped by {name} before the program began: nothing has moved, no file was written", err=True)
-    sys.exit(128 + number)
+@contextmanager
+def _before_motion() -> Iterator[None]:
+    """While the program is read and its motion checked a signal ends the command: nothing to stop, and no log yet."""
+    received: list[int] = []
+
+    def leave(number: int, _frame: object) -> None:
+        received.append(number)
+        sys.exit(128 + number)
+
+    try:
+        with handled(leave):
+            yield
+    finally:
+        # not within the handler: the signal may have come while this stream was being written
+        for number in received[:1]:
+            name = signal.Signals(number).name
+            echo(f"stopped by {name} before the program began: nothing has moved, no file was written", err=True)
