@@ -10,11 +10,13 @@ from pathlib import PurePosixPath
 
 import pytest
 
+from tests import ready
+
 
 def spent_s() -> float:
     """Return the processor time of this process and of the children that it has waited for, s."""
     now = os.times()
-    return now.user + now.system + now.children_user + now.children_system
+    return now.user + now.system + now.children_user + now.children_system + ready.spent_s()
 
 
 class Meter:
@@ -52,6 +54,7 @@ class Meter:
         self.files[report.nodeid.partition("::")[0]] += getattr(report, "processor_s", 0.0)
 
     def pytest_sessionfinish(self) -> None:
+        ready.close()
         if hasattr(self.config, "workeroutput"):
             self.config.workeroutput["processor_s"] = spent_s()
 

@@ -1,19 +1,24 @@
 """A prompt in a pseudo-terminal with a model of its screen: what somebody sees and types."""
 
+import fcntl
 import os
 import re
-import signal
-import sys
-from collections.abc import Callable
+import select
+import subprocess
+import termios
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import pexpect
 import pyte
+from pexpect.fdpexpect import fdspawn
 
-COMMAND = str(Path(sys.executable).with_name("robolang"))
+from tests.ready import COMMAND, Ready
+
 WAIT_S = 120
 """The longest wait for something new on the screen; it ends a hang and measures nothing."""
 
+_TYPING_S = 0.05
 
 MOST_READS = 1000
 """The most that is read for one answer: the keys of a jog paint the screen twice a second as long as they are open."""
@@ -36,14 +41,31 @@ def _in_order(shown: str, texts: tuple[str, ...]) -> bool:
     return True
 
 
-def _with_default_signals() -> None:
-    """Let Ctrl-C and a lost terminal reach the prompt, also where the tests run in the background of a shell."""
-    for number in (signal.SIGINT, signal.SIGQUIT, signal.SIGHUP):
-        signal.signal(number, signal.SIG_DFL)
+def _fresh(
+    words: Sequence[object], streams: Sequence[int], *, cwd: object, env: Mapping[str, str], terminal: bool
+) -> "subprocess.Popen[bytes]":
+    """Start a command as ``Ready`` does, in a Python of its own."""
+
+    def take() -> None:
+        fcntl.ioctl(0, termios.TIOCSCTTY, 0)
+
+    return subprocess.Popen(
+        [COMMAND, *map(str, words)],
+        cwd=str(cwd),
+        env=dict(env),
+        start_new_session=terminal,
+        preexec_fn=take if terminal else None,
+        stdin=streams[0],
+        stdout=streams[1],
+        stderr=streams[2],
+    )
 
 
 class Terminal:
-    """``robolang repl``, or another ``command``, with a screen; ``raw`` are the bytes that it has sent."""
+    """``robolang repl``, or another ``command``, with a screen; ``raw`` are the bytes that it has sent.
+
+    ``fresh``: in a Python that has yet to start.
+    """
 
     def __init__(
         self,
@@ -53,21 +75,20 @@ class Terminal:
         rows: int = 30,
         physics: bool = False,
         command: str = "repl",
+        fresh: bool = False,
         **environment: str,
     ) -> None:
         env = dict(os.environ, TERM="xterm-256color", XDG_STATE_HOME=str(folder / "state"))
         # a size in the environment, which workers of the tests have, would hide that of this terminal
         for name in ("NO_COLOR", "COLUMNS", "LINES"):
             env.pop(name, None)
-        self.process = pexpect.spawn(
-            COMMAND,
-            [command, *([] if physics else ["--no-physics"]), *arguments],
-            dimensions=(rows, columns),
-            env=env | environment,
-            cwd=str(folder),
-            timeout=WAIT_S,
-            preexec_fn=_with_default_signals,
-        )
+        ours, theirs = os.openpty()
+        termios.tcsetwinsize(theirs, (rows, columns))
+        words = [command, *([] if physics else ["--no-physics"]), *arguments]
+        start = _fresh if fresh else Ready
+        self.process = start(words, [theirs] * 3, cwd=folder, env=env | environment, terminal=True)
+        os.close(theirs)
+        self._line = fdspawn(ours, timeout=WAIT_S)
         self.screen = pyte.Screen(columns, rows)
         # answers of the terminal, as to where the cursor is
         self.screen.write_process_input = self.send
@@ -75,7 +96,19 @@ class Terminal:
         self.raw = b""
 
     def send(self, keys: str) -> None:
-        self.process.send(keys.encode())
+        # nobody types faster; what follows Esc at once would belong to it
+        select.select([], [], [], _TYPING_S)
+        self._line.send(keys.encode())
+
+    def hang_up(self) -> None:
+        """Take the terminal away."""
+        self._line.close()
+
+    def close(self) -> None:
+        """Take the terminal away, and end the command if that does not."""
+        self.hang_up()
+        self.process.kill()
+        self.process.wait()
 
     @property
     def lines(self) -> list[str]:
@@ -116,19 +149,18 @@ class Terminal:
         """Read until the process ends; return its exit code."""
         for _ in range(MOST_READS):
             try:
-                data = self.process.read_nonblocking(65536, timeout=WAIT_S)
+                data = self._line.read_nonblocking(65536, timeout=WAIT_S)
             except pexpect.EOF:
                 break
             self.raw += data
             self._stream.feed(data)
         else:
             raise AssertionError("\n".join(["it does not end", *self.lines]))
-        self.process.wait()
-        return self.process.exitstatus if self.process.signalstatus is None else -self.process.signalstatus
+        return self.process.wait()
 
     def read(self, why: str = "nothing new on the screen") -> None:
         try:
-            data = self.process.read_nonblocking(65536, timeout=WAIT_S)
+            data = self._line.read_nonblocking(65536, timeout=WAIT_S)
         except (pexpect.TIMEOUT, pexpect.EOF) as error:
             raise AssertionError("\n".join([f"{why}: {type(error).__name__}", *self.lines])) from None
         self.raw += data

@@ -57,7 +57,7 @@ def test_a_session_from_an_empty_folder_equals_a_run_of_its_files(tmp_path, monk
         terminal.send("quit\r")
         assert terminal.ended() == 0
     finally:
-        terminal.process.close(force=True)
+        terminal.close()
     saved = [line.split() for line in (tmp_path / "job.rbl").read_text().splitlines()]
     assert saved == [line.split() for line in PROGRAM.splitlines()]  # the formatter aligns the numbers
     monkeypatch.chdir(tmp_path)

@@ -34,7 +34,7 @@ def opened(folder):
 
     yield open_one
     for terminal in terminals:
-        terminal.process.close(force=True)
+        terminal.close()
 
 
 @pytest.fixture
@@ -45,7 +45,7 @@ def terminal(opened):
 
 
 def test_the_prompt_is_there_before_the_controller_and_becomes_ready(opened):
-    terminal = opened()
+    terminal = opened(fresh=True)
     terminal.until("help lists the commands", READY)
     assert terminal.shows("MANUAL  not armed  frame WORLD", f"{NAME}.rbl")
     assert 0 <= terminal.raw.find(b"starting") < terminal.raw.find(READY.encode())
@@ -92,7 +92,7 @@ def test_ctrl_c_clears_the_line_and_keeps_the_prompt(terminal):
     terminal.send("\x03")
     terminal.send("1 + 41\r")
     terminal.until("42")
-    assert terminal.process.isalive()
+    assert terminal.process.poll() is None
 
 
 def test_a_block_is_typed_over_several_lines(terminal):
@@ -164,7 +164,7 @@ def test_the_end_of_the_terminal_stops_and_keeps_what_is_unsaved(folder, termina
     terminal.until("(unsaved)")
     terminal.send(f"{LONG}\r")
     terminal.until(f"prompt  {LONG}")
-    terminal.process.kill(signal.SIGHUP)
+    terminal.process.send_signal(signal.SIGHUP)
     assert terminal.ended() == 128 + signal.SIGHUP
     assert list(folder.glob("*.recover")) == [folder / f".{NAME}.rbl.recover"]
 
@@ -174,16 +174,15 @@ def test_the_end_of_the_terminal_stops_and_keeps_what_is_unsaved(folder, termina
 def test_a_signal_ends_the_prompt_with_its_code(terminal, number, line):
     terminal.send(line)
     terminal.until(line.rstrip())
-    terminal.process.kill(number)
+    terminal.process.send_signal(number)
     assert terminal.ended() == 128 + number
 
 
 def test_a_closed_terminal_ends_the_prompt(terminal):
     terminal.send(f"{LONG}\r")
     terminal.until(f"prompt  {LONG}")
-    process = terminal.process
-    process.close(force=False)
-    assert process.exitstatus == 128 + signal.SIGHUP
+    terminal.hang_up()
+    assert terminal.process.wait() == 128 + signal.SIGHUP
 
 
 def test_ctrl_d_asks_while_something_is_unsaved(terminal):
@@ -252,7 +251,7 @@ def test_a_terminal_that_only_shows_lines_offers_what_was_left(opened):
     lost.send("110\n")
     lost.send("1 + 41\n")
     lost.until("42")
-    lost.process.kill(signal.SIGHUP)
+    lost.process.send_signal(signal.SIGHUP)
     assert lost.ended() == 128 + signal.SIGHUP
     terminal = opened(TERM="dumb")
     terminal.until("take them? (y/n)")
@@ -329,7 +328,7 @@ def test_a_signal_ends_the_keys_and_the_prompt(keys, number, moving):
     if moving:
         keys.send(LEFT)
         keys.until_gone("840.0")
-    keys.process.kill(number)
+    keys.process.send_signal(number)
     assert keys.ended() == 128 + number
 
 

@@ -4,8 +4,6 @@ import json
 import re
 import signal
 import socket
-import subprocess
-import sys
 import webbrowser
 from contextlib import contextmanager
 from typing import NamedTuple
@@ -19,6 +17,7 @@ from robolang.execution.session import Session
 from robolang.project.project import load_project
 from robolang.view.driver import Driver
 from robolang.view.live import Live, header_of, open_page
+from tests.ready import Piped
 from tests.robolang.cli.commands import dry, robolang
 from tests.robolang.execution.standing import log_of
 from tests.robolang.view.live_server import PAGE, upgrade
@@ -174,7 +173,7 @@ def test_the_end_of_a_run_is_the_end_of_its_pages(program):
 class Started(NamedTuple):
     """A command that runs: its process, the address of its page, and what it has printed before."""
 
-    process: subprocess.Popen[str]
+    process: Piped
     url: str
     said: list[str]
 
@@ -182,12 +181,7 @@ class Started(NamedTuple):
 @contextmanager
 def command(*words):
     """A command that runs, with what it has printed up to its address."""
-    process = subprocess.Popen(
-        [sys.executable, "-m", "robolang", *map(str, words)],
-        stderr=subprocess.PIPE,
-        stdout=subprocess.PIPE,
-        text=True,
-    )
+    process = Piped(words)
     try:
         lines = []
         for line in process.stderr:
@@ -239,7 +233,7 @@ def test_run_is_followed_and_ends_by_itself(program, tmp_path):
             assert started.process.poll() is None
             page.send(json.dumps({"do": "start", "id": 1}))
             assert texts(page, lambda message: message["kind"] == "reply")[-1]["code"] == "RBL836"
-        started.process.communicate(timeout=HANG_S)
+        started.process.communicate()
         assert started.process.returncode == 0
     plain = tmp_path / "b.npz"
     dry(program, "--quiet", "--log", plain)

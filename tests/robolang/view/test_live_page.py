@@ -2,8 +2,6 @@
 
 import json
 import math
-import subprocess
-import sys
 from contextlib import contextmanager, suppress
 
 import pytest
@@ -14,6 +12,7 @@ from robolang.view.beside import LiveBeside
 from robolang.view.live_page import live_page
 from robolang.view.page import Bundle
 from tests.programs.test_scara import CELL as SLIDING
+from tests.ready import Piped
 from tests.robolang.pendant.prompting import prompt
 from tests.robolang.view.browser import PATIENCE_MS, WITHOUT_GL, chromium
 from tests.robolang.view.reaching import assert_all_can_be_reached
@@ -77,11 +76,7 @@ def browser():
 
 @contextmanager
 def viewed(program, *words):
-    process = subprocess.Popen(
-        [sys.executable, "-m", "robolang", "view", str(program), "--no-physics", "--no-browser", *words],
-        stderr=subprocess.PIPE,
-        text=True,
-    )
+    process = Piped(["view", program, "--no-physics", "--no-browser", *words])
     try:
         yield process.stderr.readline().split()[-1], process
     finally:
