@@ -124,9 +124,7 @@ def test_the_handlers_of_the_caller_are_put_back(tmp_path):
 def test_a_signal_while_the_motion_is_checked_says_that_nothing_has_moved(tmp_path, monkeypatch, number, code):
     program = tmp_path / "p.rbl"
     program.write_text("MOVE P1\n")
-    monkeypatch.setattr(
-        "robolang.execution.dry_run.rehearse", lambda project, plans, most_us: os.kill(os.getpid(), number) or ()
-    )
+    monkeypatch.setattr("robolang.execution.dry_run.rehearse", lambda *_, **__: os.kill(os.getpid(), number) or ())
     handlers = [signal.getsignal(each) for each in (signal.SIGINT, signal.SIGTERM)]
     found = CliRunner().invoke(app, ["run", "--no-physics", str(program), "--report", str(tmp_path / "r.json")])
     assert found.exit_code == code
