@@ -15,6 +15,7 @@ from runtime.robot.files.imported import FEWEST_AXES, MOST_AXES
 from runtime.robot.files.loader import load_builtin
 from runtime.robot.files.robot_file import library
 from runtime.settings.profile import Profile
+from tests.bench.gcode_campaign import CELL
 
 ROOT = Path(__file__).parents[2]
 SECTION = (ROOT / "README.md").read_text("utf-8").partition("Limits to know")[2].partition("\n## ")[0]
@@ -22,19 +23,6 @@ LIMITS = {
     lead: " ".join(text.split())
     for lead, text in re.findall(r"^- \*\*(.+?)\.\*\* (.+?)(?=^- |\Z)", SECTION, re.MULTILINE | re.DOTALL)
 }
-CELL = """
-schema = 1
-robot = "irb2400"
-[home]
-joints_deg = [0, 10, 0, 0, 80, 0]
-[hand]
-mass_kg = 0.1
-cog_mm = [0, 0, 1]
-tcp_mm_deg = [0, 0, 0, 0, 0, 0]
-stroke_mm = 80
-grip_force_n = 120
-dwell_s = 0.3
-"""
 
 
 def run(folder, *lines):
