@@ -201,7 +201,7 @@ def test_watch_checks_again_after_a_change(folder, monkeypatch):
 
 def test_watch_leaves_with_the_last_state(folder, monkeypatch):
     watched(monkeypatch)
-    robolang("check", "--watch", code=1)
+    assert robolang("check", "--watch", code=1).stderr.count("watching; Ctrl-C ends") == 1
 
 
 def test_watch_goes_on_after_a_wrong_configuration(folder, monkeypatch):

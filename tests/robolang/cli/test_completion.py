@@ -84,7 +84,7 @@ def test_a_script_names_the_command_and_its_variable(shell):
 def test_a_shell_reads_its_script(shell):
     if shutil.which(shell) is None:
         pytest.skip(f"{shell} is not there")
-    subprocess.run([shell, "-n"], input=script(shell), text=True, check=True)
+    assert subprocess.run([shell, "-n"], input=script(shell), text=True, check=False).returncode == 0
 
 
 def test_another_shell_is_refused():

@@ -154,7 +154,10 @@ def test_errors_of_planning_and_of_the_program_can_be_expected(tmp_path, code, t
 
 def test_what_a_program_printed_before_its_error_is_there(tmp_path):
     text = 'PRINT "a"\nWAIT 1 = 2, TIMEOUT 0.2\nPRINT "b"\n'
-    robolang("test", copied(tmp_path, 'alarms = ["RBL503"]\nprinted = ["a"]\ncycle_s = [0.2, 0.21]', text))
+    said = robolang(
+        "test", copied(tmp_path, 'alarms = ["RBL503"]\nprinted = ["a"]\ncycle_s = [0.2, 0.21]', text)
+    ).stdout
+    assert said.startswith("ok")
 
 
 def test_a_program_that_does_not_start_meets_no_other_expectation(tmp_path):

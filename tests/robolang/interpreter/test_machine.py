@@ -350,7 +350,7 @@ def test_a_loop_that_takes_no_time_is_named_at_its_head(text, number, place, mon
 @pytest.mark.parametrize("work", ["DELAY 0.01", "MOVE P1", "HAND ON, 0", "WAIT TIMER > 0.008 * n"])
 def test_a_loop_that_takes_time_is_none(work, monkeypatch):
     monkeypatch.setattr(run_limits, "MAX_IDLE", 20)
-    ran(f"FOR n = 1 TO 1000\nx = n\n{work}\nNEXT")
+    assert len(ran(f"FOR n = 1 TO 1000\nx = n\n{work}\nNEXT")) >= 1000  # no RBL508
 
 
 def test_idle_statements_are_counted_exactly(monkeypatch):

@@ -40,10 +40,10 @@ def test_the_pipelines_of_the_page_are_files_to_copy(name, block):
 
 
 def parse(words):
-    """Let the command line parse what a hook or a step calls; a usage error for an option that is none."""
+    """Return the parameters of what a hook or a step calls; a usage error for an option that is none."""
     program, name, *rest = words
     assert program == "robolang"
-    vars(get_command(app))["commands"][name].make_context("robolang", rest)
+    return vars(get_command(app))["commands"][name].make_context("robolang", rest).params
 
 
 def steps():
@@ -92,12 +92,13 @@ def test_hooks_are_whole():
 
 @pytest.mark.parametrize("hook", HOOKS, ids=lambda hook: hook["id"])
 def test_hooks_run_commands_that_exist(hook):
-    parse([*shlex.split(hook["entry"]), *hook.get("args", []), "pick.rbl", "place.rbl"])
+    params = parse([*shlex.split(hook["entry"]), *hook.get("args", []), "pick.rbl", "place.rbl"])
+    assert params["paths"] == ("pick.rbl", "place.rbl")
 
 
 @pytest.mark.parametrize("line", steps())
 def test_steps_run_commands_that_exist(line):
-    parse(shlex.split(line))
+    assert parse(shlex.split(line))
 
 
 def test_a_command_that_is_none_is_noticed():
