@@ -102,12 +102,14 @@ class Ready:
 
 
 class Piped(Ready):
-    """A command that reads nothing and whose ``stdout`` and ``stderr`` are read here, as text."""
+    """A command that reads a few lines and whose ``stdout`` and ``stderr`` are read here, as text."""
 
-    def __init__(self, words: Sequence[object]) -> None:
-        (out, theirs_out), (err, theirs_err), nothing = os.pipe(), os.pipe(), os.open(os.devnull, os.O_RDONLY)
-        theirs = (nothing, theirs_out, theirs_err)
-        super().__init__(words, theirs, cwd=Path.cwd(), env=os.environ, terminal=False)
+    def __init__(self, words: Sequence[object], *, cwd: Path | None = None, typed: str = "") -> None:
+        (theirs_in, typing), (out, theirs_out), (err, theirs_err) = os.pipe(), os.pipe(), os.pipe()
+        os.write(typing, typed.encode())
+        os.close(typing)
+        theirs = (theirs_in, theirs_out, theirs_err)
+        super().__init__(words, theirs, cwd=cwd or Path.cwd(), env=os.environ, terminal=False)
         for fd in theirs:
             os.close(fd)
         self.stdout, self.stderr = (os.fdopen(fd, encoding="utf-8") for fd in (out, err))

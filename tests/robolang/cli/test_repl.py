@@ -5,9 +5,11 @@ import signal
 import subprocess
 import sys
 from functools import partial
+from subprocess import CompletedProcess
 
 import pytest
 
+from tests.ready import Piped
 from tests.robolang.cli.commands import ROOT, shell
 from tests.steps import HANG_S
 
@@ -15,7 +17,9 @@ PICK = ROOT / "programs" / "pick_and_place.rbl"
 
 
 def repl(lines, *words, cwd):
-    return shell("repl", "--no-physics", *words, cwd=cwd, input="\n".join(lines) + "\n")
+    """Exit code, results and problems of a script."""
+    process = Piped(["repl", "--no-physics", *words], cwd=cwd, typed="\n".join(lines) + "\n")
+    return CompletedProcess(words, process.wait(), *process.communicate())
 
 
 @pytest.mark.parametrize(

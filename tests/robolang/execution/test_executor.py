@@ -213,7 +213,7 @@ MOVES = (
 )
 
 
-@pytest.mark.parametrize("cycle", range(7, 400, size(13, 93)))
+@pytest.mark.parametrize("cycle", range(7, 400, size(13, 131)))
 def test_a_pause_rests_on_the_path_and_the_move_goes_on_where_it_rests(tmp_path, cycle):
     project = project_of(tmp_path, MOVES)
     whole = Session(project, physics=False)

@@ -1,5 +1,6 @@
 """Every template on every built-in robot: a new project passes all checks as it is, and its test."""
 
+from functools import cache
 from itertools import product
 
 import numpy as np
@@ -27,8 +28,15 @@ SEARCHED = ("ur10e", "ur5e")
 SAMPLE = [at for at, (kind, robot) in enumerate(PAIRS) if robot not in SEARCHED or (kind, robot) == ("tend", "ur5e")]
 
 
-def made(folder, kind, robot):
-    return new_project(folder / "cell1", kind, robot).folder / "cell1.rbl"
+@pytest.fixture(scope="module")
+def made(tmp_path_factory):
+    """Make a project, once for each template and robot; the tests only read it."""
+
+    @cache
+    def made_once(kind, robot):
+        return new_project(tmp_path_factory.mktemp("made") / "cell1", kind, robot).folder / "cell1.rbl"
+
+    return made_once
 
 
 def judged(program, physics):
@@ -39,15 +47,15 @@ def judged(program, physics):
 
 
 @pytest.mark.parametrize(("kind", "robot"), some(PAIRS, *SAMPLE))
-def test_a_new_project_has_no_finding_and_the_layout_of_fmt(tmp_path, kind, robot):
-    program = made(tmp_path, kind, robot)
+def test_a_new_project_has_no_finding_and_the_layout_of_fmt(made, kind, robot):
+    program = made(kind, robot)
     robolang("check", "--strict", "--motion", program.parent)
     robolang("fmt", "--check", program.parent)
 
 
 @pytest.mark.parametrize(("kind", "robot"), some(PAIRS, 0, 4, 8))
-def test_a_run_of_a_new_project_is_as_its_test_expects(tmp_path, kind, robot):
-    assert judged(made(tmp_path, kind, robot), True) == []
+def test_a_run_of_a_new_project_is_as_its_test_expects(made, kind, robot):
+    assert judged(made(kind, robot), True) == []
 
 
 @pytest.mark.parametrize("kind", NAMES)
