@@ -42,6 +42,16 @@ class Bounds:
         """Return the bounds with another largest b (M + 1,)."""
         return replace(self, fastest=fastest)
 
+    def since(self, first: int) -> "Bounds":
+        """Return the bounds from a point of the grid on."""
+        return Bounds(
+            along=self.along[first:],
+            across=self.across[first:],
+            beside=self.beside[first:],
+            most=self.most[first:],
+            fastest=self.fastest[first:],
+        )
+
     def scaled(self, acceleration: Array, speed: Array) -> "Bounds":
         """Return the bounds at shares (M + 1,) of all accelerations and of the speed."""
         return replace(self, most=self.most * acceleration[:, None], fastest=self.fastest * speed**2)
@@ -65,6 +75,20 @@ def rates(x: Array, bounds: Bounds, start: float = 0.0, end: float = 0.0) -> Arr
     found = _forwards(steps, span, reachable, start)
     # comparisons of single numbers pass over NaN
     return found if np.isfinite(reachable).all() and np.isfinite(found).all() else np.full(len(x), np.nan)
+
+
+def raised(x: Array, bounds: Bounds, start: float) -> Bounds:
+    """Return bounds whose largest b leaves room to brake from ``start``, where a path begins faster than they allow."""
+    if not start > bounds.fastest[0]:
+        return bounds
+    span, widths = _range(bounds), 2.0 * np.diff(x)
+    fastest, value = bounds.fastest.copy(), float(start)
+    for k, width in enumerate(widths.tolist()):
+        if not value > fastest[k]:
+            break
+        fastest[k] = value
+        value += width * float((span.below[k] * value - span.least[k]).max())
+    return bounds.replaced(fastest)
 
 
 def _range(bounds: Bounds) -> _Range:

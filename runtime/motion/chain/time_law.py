@@ -40,18 +40,65 @@ class TimeLaw:
 
     @property
     def seconds(self) -> float:
-        """How long the law lasts, s."""
+        """When the law ends, s."""
         return float(self.t[-1])
+
+    def then(self, rest: "TimeLaw") -> "TimeLaw":
+        """Return this law with another one, which begins where this one ends, in place of its last point."""
+        return TimeLaw(
+            x=np.concatenate([self.x[:-1], rest.x]),
+            v=np.concatenate([self.v[:-1], rest.v]),
+            t=np.concatenate([self.t[:-1], rest.t + (self.seconds - rest.t[0])]),
+        )
+
+    def until(self, seconds: float) -> "TimeLaw":
+        """Return the law up to a time within it, s, which is a point of it then."""
+        at = np.array([seconds])
+        count = int(np.searchsorted(self.t, seconds, side="left"))
+        k, passed = self._segment(at)
+        speed = self.v[k] + self._gain[k] * passed
+        return TimeLaw(
+            x=np.append(self.x[:count], self._place(at)),
+            v=np.append(self.v[:count], speed),
+            t=np.append(self.t[:count], seconds),
+        )
+
+    def since(self, seconds: float, place: float) -> "TimeLaw":
+        """Return the law from the last point before a time on; times count from there, s, and places from ``place``."""
+        first = max(int(np.searchsorted(self.t, seconds, side="right")) - 1, 0)
+        return TimeLaw(x=self.x[first:] - place, v=self.v[first:], t=self.t[first:] - seconds)
+
+    def slower(self, factor: float) -> "TimeLaw":
+        """Return the law in so many times its time."""
+        return TimeLaw(x=self.x, v=self.v / factor, t=self.t * factor)
+
+    def stretch(self, period_s: float, mean_s: float) -> float:
+        """Return the factor by which the mean over ``mean_s`` takes longer in whole cycles of ``period_s``."""
+        return self._cycles(period_s, mean_s) * period_s / (self.seconds + mean_s)
 
     def sampled(self, period_s: float, mean_s: float) -> Array:
         """Return X (N + 1,), one a cycle of ``period_s``: the mean over ``mean_s``, stretched to whole cycles."""
-        seconds = self.seconds + mean_s
-        cycles = max(1, int(np.ceil(seconds / period_s - 1e-9)))
-        times = np.linspace(0.0, seconds, cycles + 1)
+        return self._means(np.linspace(0.0, self.seconds + mean_s, self._cycles(period_s, mean_s) + 1), mean_s)
+
+    def going_on(self, period_s: float, mean_s: float) -> Array:
+        """Return X (N + 1,) from time 0 on of a law that began before, one a cycle; it ends within the last."""
+        return self._means(period_s * np.arange(self._cycles(period_s, mean_s) + 1), mean_s)
+
+    def _cycles(self, period_s: float, mean_s: float) -> int:
+        return max(1, int(np.ceil((self.seconds + mean_s) / period_s - 1e-9)))
+
+    def _means(self, times: Array, mean_s: float) -> Array:
         # the mean at rest before the start and after the end: the law stands there
         found = self._mean(times, mean_s) if mean_s > 0.0 else self._place(times)
-        found[0], found[-1] = self.x[0], self.x[-1]
+        found[-1] = self.x[-1]
+        if not self.t[0] < 0.0:
+            found[0] = self.x[0]
         return np.asarray(np.clip(np.maximum.accumulate(found), self.x[0], self.x[-1]))
+
+    @property
+    def _gain(self) -> Array:
+        """The acceleration (M,) from point to point."""
+        return np.asarray(np.diff(self.v) / np.maximum(np.diff(self.t), _STANDS))
 
     def _segment(self, times: Array) -> tuple[NDArray[np.intp], Array]:
         """Return the segment (N,) of every time within the law, and the time passed in it."""
@@ -59,13 +106,11 @@ class TimeLaw:
         return k, times - self.t[k]
 
     def _place(self, times: Array) -> Array:
-        k, passed = self._segment(np.clip(times, 0.0, self.seconds))
-        gain = np.diff(self.v) / np.maximum(np.diff(self.t), _STANDS)
-        return np.asarray(self.x[k] + self.v[k] * passed + 0.5 * gain[k] * passed**2)
+        k, passed = self._segment(np.clip(times, self.t[0], self.seconds))
+        return np.asarray(self.x[k] + self.v[k] * passed + 0.5 * self._gain[k] * passed**2)
 
     def _mean(self, times: Array, mean_s: float) -> Array:
-        lasts = np.diff(self.t)
-        gain = np.diff(self.v) / np.maximum(lasts, _STANDS)
+        lasts, gain = np.diff(self.t), self._gain
         # from the middle of the path: an integral of large places would lose the digits of a small difference
         origin = 0.5 * (self.x[0] + self.x[-1])
         off = self.x - origin
@@ -73,18 +118,18 @@ class TimeLaw:
         whole = np.concatenate([[0.0], np.cumsum(parts)])
 
         def integral(at: Array) -> Array:
-            inside = np.clip(at, 0.0, self.seconds)
+            inside = np.clip(at, self.t[0], self.seconds)
             k, passed = self._segment(inside)
             within = whole[k] + off[k] * passed + self.v[k] * passed**2 / 2.0 + gain[k] * passed**3 / 6.0
             # it stands before its start and after its end
-            at_rest = np.where(at < 0.0, off[0] * at, off[-1] * (at - inside))
+            at_rest = np.where(at < self.t[0], off[0], off[-1]) * (at - inside)
             return np.asarray(within + at_rest)
 
         return np.asarray(origin + (integral(times) - integral(times - mean_s)) / mean_s)
 
 
 def eased(x: Array, b: Array, mean_s: float) -> Array:
-    """Return b (M + 1,) lowered so that each of its tops lasts ``mean_s`` at least."""
+    """Return b (M + 1,) lowered so that each of its tops lasts ``mean_s`` at least; the first of b stays."""
     whole = np.sqrt(b)
     v = whole.copy()
     for first, last in sorted(_tops(v), key=lambda top: -whole[top[0]]):
@@ -118,8 +163,9 @@ def _tops(v: Array) -> list[tuple[int, int]]:
 def _cut(x: Array, v: Array, first: int, last: int, mean_s: float) -> None:
     """Lower v about a top until what is cut off lasts ``mean_s`` at the speed that is left."""
     level, end = float(v[first]), len(v) - 1
-    while x[last] - x[first] < level * mean_s:
-        before = float(v[first - 1]) if first > 0 else 0.0
+    # where the path begins in motion, the law before it goes on: how long its top has lasted is not known here
+    while first > 0 and x[last] - x[first] < level * mean_s:
+        before = float(v[first - 1])
         after = float(v[last + 1]) if last < end else 0.0
         # a level between two points of the grid: what is above it may be wider than these points, never less wide
         beside, fits = max(before, after), float(x[last] - x[first]) / mean_s
@@ -127,8 +173,8 @@ def _cut(x: Array, v: Array, first: int, last: int, mean_s: float) -> None:
             level = fits
             break
         level = beside
-        if first > 0 and before >= after:
+        if before >= after:
             first -= 1
         else:
             last += 1
-    v[first : last + 1] = np.minimum(v[first : last + 1], level)
+    v[first : last + 1] = np.minimum(v[first : last + 1], np.maximum(level, v[0] if first == 0 else 0.0))

@@ -10,7 +10,10 @@ So a limit that binds at one place slows the motion there and nowhere else. What
 a whole, which is rare. Without a limit of jerk T is 0.
 
 A slow or a short motion never reaches its accelerations: then a shorter T, with accelerations lower by the same share,
-is faster, and is taken. Called by ``paced``; x m, t s, q rad.
+is faster, and is taken.
+
+A path may go on from a motion that runs already (``Begun``): its law is that of the motion up to a moment, and is found
+anew from there. Called by ``paced``; x m, t s, q rad.
 """
 
 import math
@@ -23,7 +26,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.units import badness
 from runtime.motion.chain.bends import bend_speeds
-from runtime.motion.chain.rates import Bounds, rates
+from runtime.motion.chain.rates import Bounds, raised, rates
 from runtime.motion.chain.time_law import TimeLaw, eased, narrow
 from runtime.motion.fine_interpolator import through
 from runtime.motion.velocity_profile import check_duration
@@ -55,12 +58,13 @@ class Limits:
     jerk: Array
     period_s: float
 
-    def passed(self, setpoints: Array) -> tuple[Array, Array, Array]:
+    def passed(self, setpoints: Array, before: Array | None = None) -> tuple[Array, Array, Array]:
         """Return the shares of speed (N + 6, n), acceleration (N + 5, n) and jerk (N + 4, n) of set-points (N + 1, n).
 
-        From rest to rest: three set-points alike stand before the first and after the last.
+        Three set-points alike stand after the last, and ``before`` (3, n) the first, None: alike as well.
         """
-        steps = np.concatenate([np.repeat(setpoints[:1], 3, axis=0), setpoints, np.repeat(setpoints[-1:], 3, axis=0)])
+        before = np.repeat(setpoints[:1], 3, axis=0) if before is None else before
+        steps = np.concatenate([before, setpoints, np.repeat(setpoints[-1:], 3, axis=0)])
         shares = []
         for limit, power in ((self.speed, 1), (self.acceleration, 2), (self.jerk, 3)):
             steps = np.diff(steps, axis=0)
@@ -76,25 +80,79 @@ class Path:
     bounds: Bounds
     joints: Callable[[Array], Array]
 
+    def since(self, first: int) -> "Path":
+        """Return the path from a point of its grid on."""
+        return replace(self, x=self.x[first:], bounds=self.bounds.since(first))
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Shares:
+    """Shares (M + 1,) of ``speed`` and of the ``acceleration`` that a path takes on its grid."""
+
+    speed: Array
+    acceleration: Array
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Begun:
+    """A motion that runs already: its ``law`` up to where the path is timed anew, which is point ``at`` of its grid.
+
+    Times count from row 0, the last that stays: ``x`` (4,) and ``setpoints`` (4, n) are of the rows -3 to 0. ``shares``
+    are those with which the rest of the path begins; ``mean_s`` is T.
+    """
+
+    law: TimeLaw
+    at: int
+    x: Array
+    setpoints: Array
+    shares: Shares
+    mean_s: float
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is in motion where the path is timed anew; else it begins at rest."""
+        return bool(self.law.v[-1] > 0.0)
+
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Timed:
-    """A timed path: places ``x`` (N + 1,) and joints ``q`` (N + 1, n), one a cycle, and the ``setpoints`` for them."""
+    """A timed path: places ``x`` (N + 1,) and joints ``q`` (N + 1, n), one a cycle, and the ``setpoints`` for them.
+
+    ``law`` is what they are the mean of, over ``mean_s``; ``shares`` those of the grid where it was timed.
+    """
 
     x: Array
     q: Array
     setpoints: Array
+    law: TimeLaw
+    mean_s: float
+    shares: Shares
 
 
-def timed(path: Path, limits: Limits, mean_s: float) -> Timed:
-    """Return the fastest motion found along a path; ``mean_s`` is T. ``Fault`` RBL404 for one of too long a time."""
+def timed(path: Path, limits: Limits, mean_s: float, *, begun: Begun | None = None, whole: bool = False) -> Timed:
+    """Return the fastest motion found along a path; ``mean_s`` is T. ``Fault`` RBL404 for one of too long a time.
+
+    ``begun``: it goes on from that motion; ``whole``: T is not shortened for a short motion.
+    """
     path = _within_bends(path, limits)
-    best = _timed(path, limits, mean_s, 1.0)
-    if 0.0 < (len(best.x) - 1) * limits.period_s < _LONG * mean_s:
+    if begun is not None:
+        return _timed(path.since(begun.at), limits, begun)
+    best = _timed(path, limits, _at_rest(path, mean_s, 1.0))
+    if not whole and 0.0 < (len(best.x) - 1) * limits.period_s < _LONG * mean_s:
         share = _better_share(path, mean_s)
-        other = _timed(path, limits, mean_s * share, share) if share < _ALIKE else best
+        other = _timed(path, limits, _at_rest(path, mean_s * share, share)) if share < _ALIKE else best
         best = other if len(other.x) < len(best.x) else best
     return best
+
+
+def _at_rest(path: Path, mean_s: float, share: float) -> Begun:
+    """Return what a path that begins at rest goes on from, at a share of its accelerations."""
+    still = TimeLaw(x=path.x[:1], v=np.zeros(1), t=np.zeros(1))
+    shares = Shares(speed=np.ones(len(path.x)), acceleration=np.full(len(path.x), float(share)))
+    q = path.joints(path.x[:1])
+    return Begun(
+        law=still, at=0, x=np.repeat(path.x[:1], 4), setpoints=np.repeat(q, 4, axis=0), shares=shares, mean_s=mean_s
+    )
 
 
 def _better_share(path: Path, mean_s: float) -> float:
@@ -123,15 +181,15 @@ def _within_bends(path: Path, limits: Limits) -> Path:
     return replace(path, bounds=bounds.replaced(speeds**2))
 
 
-def _timed(path: Path, limits: Limits, mean_s: float, share: float) -> Timed:
-    speed, acceleration = np.ones(len(path.x)), np.full(len(path.x), float(share))
+def _timed(path: Path, limits: Limits, begun: Begun) -> Timed:
+    speed, acceleration, mean_s = begun.shares.speed.copy(), begun.shares.acceleration.copy(), begun.mean_s
     around = max(1, math.ceil(0.5 * mean_s / limits.period_s)) + 1
     for round_ in range(_ROUNDS):
-        law = _law(path, path.bounds.scaled(acceleration, speed), mean_s)
+        law = _law(path, path.bounds.scaled(acceleration, speed), begun)
         check_duration(law.seconds + mean_s)
-        found = _along(path, law.sampled(limits.period_s, mean_s))
-        fast, gaining, jerk = limits.passed(found.setpoints)
-        pace = _pace(path, found.x, limits.period_s)
+        found = _along(path, law, limits.period_s, begun, Shares(speed=speed, acceleration=acceleration))
+        fast, gaining, jerk = limits.passed(found.setpoints, begun.setpoints[:3])
+        pace = _pace(path, found, limits.period_s, begun)
         if max((float(each.max()) for each in (fast, gaining, jerk, pace)), key=badness) <= SLACK:
             return found
         firm = 1.0 if round_ < _FIRMER else 1.0 + 0.25 * (round_ - _FIRMER + 1)
@@ -139,27 +197,38 @@ def _timed(path: Path, limits: Limits, mean_s: float, share: float) -> Timed:
         _lower(path.x, speed, found.x, np.maximum(fast.max(axis=1), pace), (1, around), firm)
         _lower(path.x, acceleration, found.x, gaining.max(axis=1), (2, around), firm)
         # the jerk of a change of speed, or that of the path itself, which a lower speed makes less by its cube
-        along = _changing(path, found.x, limits)
+        along = _changing(path, _rows(found.x, begun), limits)
         changes = (along >= 0.5 * jerk) | (round_ >= _BOTH)
         _lower(path.x, acceleration, found.x, np.where(changes, jerk, 0.0).max(axis=1), (3, around), gently)
         bends = ~changes | (round_ >= _BOTH)
         _lower(path.x, speed, found.x, np.where(bends, jerk, 0.0).max(axis=1), (3, 1), gently / 3.0)
-    return _slowed(path, limits, law, mean_s)
+    return _slowed(path, limits, law, Shares(speed=speed, acceleration=acceleration), begun)
 
 
-def _pace(path: Path, x: Array, period_s: float) -> Array:
-    """Return the share (N + 6,) of the bounds of speed along the path that a motion at x (N + 1,) takes.
+def _rows(x: Array, begun: Begun) -> Array:
+    """Return places (N + 7,) with the three before the first and after the last of x (N + 1,)."""
+    return np.concatenate([begun.x[:3], x, np.repeat(x[-1:], 3)])
+
+
+def _pace(path: Path, found: Timed, period_s: float, begun: Begun) -> Array:
+    """Return the share (N + 6,) of the bounds of speed along the path that a motion takes.
 
     The mean over T carries the speed before a narrow place into it.
     """
-    places = np.concatenate([np.repeat(x[:1], 3), x, np.repeat(x[-1:], 3)])
+    places = _rows(found.x, begun)
     most = np.interp(places, path.x, np.sqrt(path.bounds.fastest))
-    return np.asarray(np.diff(places) / period_s / np.maximum(most[:-1], most[1:]))
+    shares = np.asarray(np.diff(places) / period_s / np.maximum(most[:-1], most[1:]))
+    if begun.moves:
+        # a motion that is faster than it may be from now on brakes first, and the mean follows
+        law = found.law
+        faster = np.flatnonzero(law.v**2 > np.interp(law.x, path.x, path.bounds.fastest) * SLACK)
+        slow_s = law.t[min(int(faster.max(initial=0)) + 1, len(law.t) - 1)]
+        shares[: 3 + math.ceil((max(slow_s, begun.law.seconds) + begun.mean_s) / period_s)] = 0.0
+    return shares
 
 
-def _changing(path: Path, x: Array, limits: Limits) -> Array:
-    """Return the share of the jerk (N + 4, n) that changes of the acceleration along the path at x (N + 1,) make."""
-    places = np.concatenate([np.repeat(x[:1], 3), x, np.repeat(x[-1:], 3)])
+def _changing(path: Path, places: Array, limits: Limits) -> Array:
+    """Return the share of the jerk (N + 4, n) that changes of the acceleration along the path make, of ``_rows``."""
     third = np.abs(np.diff(places, 3)) / limits.period_s**3
     middle = places[1:-2]
     slope = np.stack(
@@ -168,26 +237,39 @@ def _changing(path: Path, x: Array, limits: Limits) -> Array:
     return np.asarray(third[:, None] * slope.T / limits.jerk)
 
 
-def _law(path: Path, bounds: Bounds, mean_s: float) -> TimeLaw:
-    b = rates(path.x, bounds)
+def _law(path: Path, bounds: Bounds, begun: Begun) -> TimeLaw:
+    start, mean_s = float(begun.law.v[-1]) ** 2, begun.mean_s
+    bounds = raised(path.x, bounds, start)
+    b = rates(path.x, bounds, start)
     if mean_s > 0.0:
         low = narrow(path.x, b, mean_s)
         if (low < b).any():
-            b = rates(path.x, bounds.replaced(np.minimum(bounds.fastest, low)))
+            b = rates(path.x, raised(path.x, bounds.replaced(np.minimum(bounds.fastest, low)), start), start)
         b = eased(path.x, b, mean_s)
-    return TimeLaw.of(path.x, b)
+    # it is as fast as it is, whatever can be reached from there
+    b[0] = start
+    return begun.law.then(TimeLaw.of(path.x, b))
 
 
-def _along(path: Path, law: Array) -> Timed:
-    """Return the motion of a sampled law (N + 1,).
+def _along(path: Path, law: TimeLaw, period_s: float, begun: Begun, shares: Shares) -> Timed:
+    """Return the motion of a law.
 
     Its samples are taken as set-points of the place on the path: so the place has no steps within a cycle, and the
     set-points of the joints follow it without swinging.
     """
-    x = law.copy()
-    x[1:-1] = (law[:-2] + 4.0 * law[1:-1] + law[2:]) / 6.0
+    mean_s = begun.mean_s
+    if begun.moves:
+        sampled = law.going_on(period_s, mean_s)
+    else:
+        sampled = law.sampled(period_s, mean_s)
+        stretch = law.stretch(period_s, mean_s)
+        law, mean_s = law.slower(stretch), mean_s * stretch
+    x = sampled.copy()
+    x[0] = begun.x[-1]
+    x[1:-1] = (sampled[:-2] + 4.0 * sampled[1:-1] + sampled[2:]) / 6.0
     q = path.joints(x)
-    return Timed(x=x, q=q, setpoints=through(q))
+    setpoints = through(np.concatenate([begun.setpoints[-1:], q[1:]]))
+    return Timed(x=x, q=q, setpoints=setpoints, law=law, mean_s=mean_s, shares=shares)
 
 
 def _lower(grid: Array, field: Array, x: Array, passed: Array, about: tuple[int, int], firmness: float) -> None:
@@ -208,15 +290,17 @@ def _lower(grid: Array, field: Array, x: Array, passed: Array, about: tuple[int,
     field *= lowered
 
 
-def _slowed(path: Path, limits: Limits, law: TimeLaw, mean_s: float) -> Timed:
+def _slowed(path: Path, limits: Limits, law: TimeLaw, shares: Shares, begun: Begun) -> Timed:
     """Return a motion slowed as a whole until it keeps every limit; ``Fault`` RBL404 where no time is enough."""
     factor = _WHOLE
-    for _ in range(_MOST_SLOWING):
-        slower = TimeLaw(x=law.x, v=law.v / factor, t=law.t * factor)
-        check_duration(slower.seconds + mean_s)
-        found = _along(path, slower.sampled(limits.period_s, mean_s))
-        shares = limits.passed(found.setpoints)
-        over = (float(each.max()) ** (1.0 / power) for power, each in enumerate(shares, start=1))
+    # what runs already cannot be slowed as a whole
+    for _ in range(0 if begun.moves else _MOST_SLOWING):
+        slower = law.slower(factor)
+        check_duration(slower.seconds + begun.mean_s)
+        found = _along(path, slower, limits.period_s, begun, shares)
+        over = (
+            float(each.max()) ** (1.0 / power) for power, each in enumerate(limits.passed(found.setpoints), start=1)
+        )
         worst = max(over, key=badness)
         if worst <= SLACK:
             return found

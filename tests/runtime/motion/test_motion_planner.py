@@ -9,7 +9,7 @@ import pytest
 from runtime.core.faults import Fault
 from runtime.core.frames import pose, rotation_about
 from runtime.motion.cartesian_planner import EXCEPTION, CartesianPlanner
-from runtime.motion.chain.timing import Timed, timed
+from runtime.motion.chain.timing import timed
 from runtime.motion.commands import MAX, Command, MoveArc, MoveJoint, MoveLinear
 from runtime.motion.motion_planner import ChainFault, ChainPlan
 from tests.runtime.motion.motions import (
@@ -23,6 +23,9 @@ from tests.runtime.motion.motions import (
     off_path,
     random_chain,
 )
+
+ROWS = ("x", "q", "setpoints")
+"""What a timed path has a row of for every cycle."""
 
 
 def by(robot: Bench, *steps, zone: float = 0.0, **options) -> list[Command]:
@@ -370,10 +373,10 @@ def test_a_chain_that_keeps_no_cap_stops_at_its_corners(monkeypatch):
     found = robot.planner.chain(robot.home(), commands, TOOL, cap=0.25)
     assert found.corners[0].cycles > 0
 
-    def fast(*given):
-        found = timed(*given)
+    def fast(*given, **named):
+        found = timed(*given, **named)
         rows = [*range(0, len(found.x) - 1, 2), len(found.x) - 1]
-        return Timed(**{name: getattr(found, name)[rows] for name in found.__slots__})
+        return replace(found, **{name: getattr(found, name)[rows] for name in ROWS})
 
     monkeypatch.setattr("runtime.motion.chain.paced.timed", fast)
     monkeypatch.setattr("runtime.motion.chain.paced._TIMES", 1)
@@ -386,9 +389,9 @@ def test_a_chain_that_takes_longer_than_its_moves_alone_stops_at_its_corners(mon
     robot = bench("puma560")
     commands = by(robot, *RIGHT_ANGLE, zone=0.03, speed=0.4)
 
-    def slow(*given):
-        found = timed(*given)
-        return Timed(**{name: np.repeat(getattr(found, name), 2, axis=0) for name in found.__slots__})
+    def slow(*given, **named):
+        found = timed(*given, **named)
+        return replace(found, **{name: np.repeat(getattr(found, name), 2, axis=0) for name in ROWS})
 
     monkeypatch.setattr("runtime.motion.chain.paced.timed", slow)
     found = chain(robot, commands)
