@@ -48,7 +48,13 @@ class PlanMemory(MotionPlanner):
         return found
 
     def join(
-        self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, cap: float | None = None
+        self,
+        plans: Sequence[MovePlan],
+        zones: Sequence[float],
+        X_flange_tool: Array,
+        cap: float | None = None,
+        *,
+        more: bool = False,
     ) -> ChainPlan:
         """Return moves blended in their zones, as ``MotionPlanner.join`` does."""
         key = (
@@ -56,9 +62,10 @@ class PlanMemory(MotionPlanner):
             *zones,
             X_flange_tool.tobytes(),
             cap,
+            more,
         )  # plans are kept, so ids stay theirs
         if key not in self._chains:
-            self._chains[key] = super().join(plans, zones, X_flange_tool, cap)
+            self._chains[key] = super().join(plans, zones, X_flange_tool, cap, more=more)
         return self._chains[key]
 
 

@@ -1,11 +1,13 @@
 """Moves in a row, each planned alone, as one motion: paths rounded in the zones, each timed as a whole.
 
 A row of moves is cut where the arm stops: where a zone is 0, or leaves no room. What is between two stops is a
-``ChainPath``; a move between two stops runs as it was planned. Called by ``MotionPlanner.join``; m, rad, s.
+``ChainPath``; a move between two stops runs as it was planned. More moves may follow while the last of these paths runs
+(``extension``): then it goes on, and the arm does not stop. Called by ``MotionPlanner``; m, rad, s.
 """
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from typing import TypedDict
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +17,8 @@ from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.chain_path import ChainPath
 from runtime.motion.chain.corner import Corner, Rounding, roundings, woven
-from runtime.motion.chain.paced import ChainLimits, paced
+from runtime.motion.chain.going_on import Going
+from runtime.motion.chain.paced import AT_REST, OPEN, Beginning, ChainLimits, paced
 from runtime.motion.chain.piece import JointLine, Piece
 from runtime.motion.fine_interpolator import through
 from runtime.motion.path_ik import Arm
@@ -30,7 +33,8 @@ class Joined:
     """Rows ``q`` (N + 1, n) of a row of moves with their ``setpoints``, ``command`` (N + 1,) and ``share`` (N + 1,).
 
     ``command`` is the number of the move to which a row belongs, ``share`` how far that has come on its path.
-    ``lasts`` (K,) is the last row of each move, and ``corners`` lie between the moves.
+    ``lasts`` (K,) is the last row of each move, and ``corners`` lie between the moves. ``tail`` is the path that ends
+    them, None where nothing can follow it without a stop.
     """
 
     q: Array
@@ -39,6 +43,22 @@ class Joined:
     share: Array
     lasts: tuple[int, ...]
     corners: tuple[Corner, ...]
+    tail: "Tail | None" = None
+
+
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Tail:
+    """The path that ends a row of moves: its row 0 is ``row`` of theirs, its first piece the move number ``move``.
+
+    ``zone``, m, is that of the last move; ``more_at`` the last row that stays when more moves follow, ``row`` where it
+    is too short to change while it runs. None: none may follow without a stop.
+    """
+
+    going: Going
+    row: int
+    move: int
+    zone: float
+    more_at: int | None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -50,32 +70,64 @@ class _Run:
     number: NDArray[np.intp]
     share: Array
     corners: tuple[Corner, ...] = ()
+    going: Going | None = None
 
 
-def joined(plans: Sequence[MovePlan], zones: Sequence[float], arm: Arm, limits: ChainLimits) -> Joined:
-    """Return moves as one motion, rounded in the zones (m) at their ends, the last of which stops."""
+def joined(
+    plans: Sequence[MovePlan], zones: Sequence[float], arm: Arm, limits: ChainLimits, *, more: bool = False
+) -> Joined:
+    """Return moves as one motion, rounded in the zones (m) at their ends, the last of which stops.
+
+    ``more``: other moves are to follow without a stop (``extension``).
+    """
     start = plans[0].q[:1]
     q, setpoints, command, share = [start], [start], [np.zeros(1, dtype=np.int32)], [np.zeros(1)]
     corners: list[Corner] = []
+    tail, rows = None, 0
     for at, last, rounded in _between_stops(plans, zones, arm):
-        for run in _runs(plans[at : last + 1], rounded, zones[at:last], arm, limits):
+        opens = more and last == len(plans) - 1
+        for run in _runs(plans[at : last + 1], rounded, zones[at:last], arm, limits, OPEN if opens else AT_REST):
             q.append(run.q[1:])
             setpoints.append(run.setpoints[1:])
             command.append((run.number[1:] + at).astype(np.int32))
             share.append(run.share[1:])
+            if run.going is not None and opens:
+                tail = tail_of(run.going, (rows, at), zones[-1], limits)
+            rows += len(run.q) - 1
             at += len(run.corners) + 1
             corners += [*run.corners, *(Corner(radius=zone) for zone in zones[at - 1 : at])]
-    whole = np.concatenate(command)
-    lasts = np.searchsorted(whole, np.arange(len(plans)), side="right") - 1
-    whole[-1] = len(plans) - 1  # also where the last moves end where they start
     return Joined(
         q=np.concatenate(q),
         setpoints=np.concatenate(setpoints),
-        command=whole,
+        **numbered(np.concatenate(command), len(plans)),
         share=np.concatenate(share),
-        lasts=tuple(np.maximum(lasts, 0).tolist()),
         corners=tuple(corners[: len(plans) - 1]),
+        tail=tail,
     )
+
+
+class Numbered(TypedDict):
+    """The moves to which rows belong, and the last row of each, as in ``Joined``."""
+
+    command: NDArray[np.int32]
+    lasts: tuple[int, ...]
+
+
+def numbered(command: NDArray[np.int32], moves: int) -> Numbered:
+    """Return the moves to which rows belong, with the last row of each."""
+    lasts = np.searchsorted(command, np.arange(moves), side="right") - 1
+    command[-1] = moves - 1  # also where the last moves end where they start
+    return {"command": command, "lasts": tuple(np.maximum(lasts, 0).tolist())}
+
+
+def tail_of(going: Going, begins: tuple[int, int], zone: float, limits: ChainLimits) -> Tail:
+    """Return a path, which begins at a row and a move of a row of moves, as their tail; the last has a ``zone``, m."""
+    row, move = begins
+    at = going.more_at(zone, limits.joints.period_s) if zone > 0.0 else None
+    # what is in motion already cannot begin anew
+    if at is None and zone > 0.0 and not going.timed.law.t[0] < 0.0:
+        at = 0
+    return Tail(going=going, row=row, move=move, zone=zone, more_at=None if at is None else row + at)
 
 
 def _runs(
@@ -84,13 +136,14 @@ def _runs(
     zones: Sequence[float],
     arm: Arm,
     limits: ChainLimits,
+    beginning: Beginning,
 ) -> list[_Run]:
     """Return moves between two stops as one path; as moves that stop where it cannot be timed, or takes longer."""
-    if len(plans) == 1:
+    if plans[0].piece is None or (len(plans) == 1 and not beginning.open):
         return [_alone(plans[0], arm, limits)]
-    path = ChainPath(arm, [_piece(plan) for plan in plans], woven([_piece(plan) for plan in plans], rounded, arm))
+    path = ChainPath(arm, [piece_of(plan) for plan in plans], woven([piece_of(plan) for plan in plans], rounded, arm))
     try:
-        found = paced(path, limits)
+        found = paced(path, limits, beginning)
     except Fault:
         return [_alone(plan, arm, limits) for plan in plans]
     # but for splines, drafts are never longer than what they stand for
@@ -98,9 +151,10 @@ def _runs(
         alone = [_alone(plan, arm, limits) for plan in plans]
         if len(found.x) - 1 > sum(len(run.q) - 1 for run in alone):
             return alone
-    corners = _corners(path, zones, found.x)
+    going = Going.from_rest(path, found)
     number, share = path.move_at(found.x), path.share_at(found.x)
-    return [_Run(q=found.q, setpoints=found.setpoints, number=number, share=share, corners=corners)]
+    corners = corners_of(going, zones)
+    return [_Run(q=found.q, setpoints=found.setpoints, number=number, share=share, corners=corners, going=going)]
 
 
 def _alone(plan: MovePlan, arm: Arm, limits: ChainLimits) -> _Run:
@@ -122,7 +176,7 @@ def _between_stops(
     first = 0
     for begin, end in _with_zones(plans, zones):
         found = (
-            roundings([_piece(plan) for plan in plans[begin : end + 1]], zones[begin:end], arm) if end > begin else []
+            roundings([piece_of(plan) for plan in plans[begin : end + 1]], zones[begin:end], arm) if end > begin else []
         )
         for k in range(begin, end + 1):
             if k == end or not found[k - begin].half > 0.0:
@@ -140,14 +194,15 @@ def _with_zones(plans: Sequence[MovePlan], zones: Sequence[float]) -> Iterator[t
             first = k + 1
 
 
-def _piece(plan: MovePlan) -> Piece:
+def piece_of(plan: MovePlan) -> Piece:
+    """Return the piece of a plan that goes somewhere."""
     assert plan.piece is not None
     return plan.piece
 
 
-def _corners(path: ChainPath, zones: Sequence[float], x: Array) -> tuple[Corner, ...]:
-    """Return what became of the corners of a path that is at x (N + 1,)."""
-    course = path.course
+def corners_of(going: Going, zones: Sequence[float]) -> tuple[Corner, ...]:
+    """Return what became of the corners of a path as it runs; ``zones`` m are those programmed."""
+    path, x, course = going.path, going.x, going.path.course
     halves, middles = course.overlap.halves[1:-1], course.ends[1:-1]
     places = middles[:, None] + halves[:, None] * _AROUND
     # one after the other, since corners may overlap

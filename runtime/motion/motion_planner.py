@@ -24,8 +24,9 @@ from runtime.core.units import MM, PERCENT
 from runtime.motion.cartesian_planner import CartesianPlanner, MovePlan, WristChange
 from runtime.motion.chain.corner import Corner
 from runtime.motion.chain.paced import ChainLimits
-from runtime.motion.chaining import Joined, joined
+from runtime.motion.chaining import Joined, Tail, joined
 from runtime.motion.commands import Command, MoveJoint, MoveLinear
+from runtime.motion.extension import extended
 from runtime.motion.joint_planner import JointPlanner
 from runtime.motion.path import Path
 from runtime.motion.path_ik import Arm
@@ -112,15 +113,19 @@ class ChainPlan:
     """Joint angles ``q`` (N + 1, n) rad that a chain of moves passes, 8 ms apart.
 
     ``modes`` (N + 1,) is ``wrist_mode`` of every set-point and ``command`` (N + 1,) the number of the move that it
-    belongs to, the last one at the last; ``corners`` lie between the ``parts``.
+    belongs to, the last one at the last, ``share`` (N + 1,) how far that has come; ``corners`` lie between the
+    ``parts``. ``moving``: the moves before the first have run on into it. ``tail``: what more moves may follow.
     """
 
     q: Array
     setpoints: Array
     modes: NDArray[np.int8]
     command: NDArray[np.int32]
+    share: Array
     parts: tuple[Part, ...]
     corners: tuple[Corner, ...]
+    moving: bool = False
+    tail: Tail | None = None
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -219,8 +224,19 @@ class MotionPlanner:
         X_flange_tool: Array,
         override: float = 1.0,
         cap: float | None = None,
+        *,
+        more: bool = False,
     ) -> ChainPlan:
-        """Return the plan of a chain of moves from q_start (n,) rad; ``ChainFault`` names the first that is refused."""
+        """Return the plan of a chain of moves from q_start (n,) rad; ``ChainFault`` names the first that is refused.
+
+        ``more``: others are to follow without a stop (``extend``).
+        """
+        plans = self._in_a_row(q_start, commands, X_flange_tool, override, cap)
+        return self.join(plans, [command.zone for command in commands], X_flange_tool, cap, more=more)
+
+    def _in_a_row(
+        self, q_start: Array, commands: Sequence[Command], X_flange_tool: Array, override: float, cap: float | None
+    ) -> list[MovePlan]:
         plans: list[MovePlan] = []
         # each from the end of the plan before, not from its taught end: under KEEP the two may differ
         for index, command in enumerate(commands):
@@ -228,20 +244,61 @@ class MotionPlanner:
                 plans.append(self.plan(plans[-1].q[-1] if plans else q_start, command, X_flange_tool, override, cap))
             except Fault as fault:
                 raise ChainFault(fault, index) from None
-        return self.join(plans, [command.zone for command in commands], X_flange_tool, cap)
+        return plans
+
+    def extend(
+        self,
+        chain: ChainPlan,
+        at: int,
+        commands: Sequence[Command],
+        X_flange_tool: Array,
+        override: float = 1.0,
+        cap: float | None = None,
+    ) -> tuple[ChainPlan, int]:
+        """Return a chain that goes on over more moves after row ``at``, and how many of its moves are left out.
+
+        These have ended before that row. ``Fault`` RBL404 where the motion cannot go on: the chain is to end as it was
+        planned, and another one follows. ``ChainFault`` as of ``chain``.
+        """
+        plans = self._in_a_row(chain.parts[-1].plan.q[-1], commands, X_flange_tool, override, cap)
+        arm, limits = self._arm_and_limits(X_flange_tool, cap)
+        before = Joined(
+            q=chain.q,
+            setpoints=chain.setpoints,
+            command=chain.command,
+            share=chain.share,
+            lasts=tuple(part.last for part in chain.parts),
+            corners=chain.corners,
+            tail=chain.tail,
+        )
+        plans = [*(part.plan for part in chain.parts), *plans]
+        found, left_out = extended(before, at, plans, [command.zone for command in commands], arm, limits)
+        moving = chain.corners[left_out - 1].reach > 0.0 if left_out else chain.moving
+        return self._chain_plan(found, plans[left_out:], moving=moving), left_out
+
+    def _arm_and_limits(self, X_flange_tool: Array, cap: float | None) -> tuple[Arm, ChainLimits]:
+        arm = Arm(spec=self._spec, kinematics=self.kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
+        return arm, replace(self._limits, cap=None if cap is None else self._cap(cap, X_flange_tool))
 
     def join(
-        self, plans: Sequence[MovePlan], zones: Sequence[float], X_flange_tool: Array, cap: float | None = None
+        self,
+        plans: Sequence[MovePlan],
+        zones: Sequence[float],
+        X_flange_tool: Array,
+        cap: float | None = None,
+        *,
+        more: bool = False,
     ) -> ChainPlan:
         """Return moves, each planned from the end of the one before, joined in the zones (m) at their ends.
 
-        The last one stops, whatever its zone is. ``cap`` m/s is that of ``plan``, which the paths keep as well.
+        The last one stops, whatever its zone is; ``more`` as of ``chain``. ``cap`` m/s is that of ``plan``, which the
+        paths keep as well.
         """
         if not plans:
             raise ValueError("a chain has at least one move")
-        arm = Arm(spec=self._spec, kinematics=self.kinematics, fine=self._pace.fine, X_flange_tool=X_flange_tool)
-        limits = replace(self._limits, cap=None if cap is None else self._cap(cap, X_flange_tool))
-        found = joined(plans, zones, arm, limits)
+        return self._chain_plan(joined(plans, zones, *self._arm_and_limits(X_flange_tool, cap), more=more), plans)
+
+    def _chain_plan(self, found: Joined, plans: Sequence[MovePlan], *, moving: bool = False) -> ChainPlan:
         parts = tuple(
             Part(plan=plan, first=first, last=last, s=_shares(found, index, first, last), period_s=self._pace.period_s)
             for index, (plan, first, last) in enumerate(zip(plans, (0, *found.lasts), found.lasts, strict=False))
@@ -252,8 +309,11 @@ class MotionPlanner:
             setpoints=frozen(found.setpoints),
             modes=modes,
             command=found.command,
+            share=frozen(found.share),
             parts=parts,
             corners=found.corners,
+            moving=moving,
+            tail=found.tail,
         )
 
 

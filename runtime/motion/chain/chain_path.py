@@ -16,7 +16,7 @@ from runtime.core.frames import Array, rotation_angles
 from runtime.core.linear import matmul
 from runtime.motion.chain.corner import Rounding
 from runtime.motion.chain.course import Course
-from runtime.motion.chain.grid import grid
+from runtime.motion.chain.grid import after, grid
 from runtime.motion.chain.piece import Piece
 from runtime.motion.chain.rates import Bounds
 from runtime.motion.path_ik import Arm
@@ -35,13 +35,20 @@ class ToolLimits:
 
 
 class ChainPath:
-    """Pieces (K,) and the roundings (K - 1,) between them, all of which run on: a path from rest to rest."""
+    """Pieces (K,) and the roundings (K - 1,) between them, all of which run on: a path from rest to rest.
 
-    def __init__(self, arm: Arm, pieces: Sequence[Piece], roundings: Sequence[Rounding]) -> None:
+    ``kept`` (k,) are the first points of its grid, where it goes on from another path.
+    """
+
+    def __init__(
+        self, arm: Arm, pieces: Sequence[Piece], roundings: Sequence[Rounding], kept: Array | None = None
+    ) -> None:
         self.arm, self.pieces, self.roundings = arm, tuple(pieces), tuple(roundings)
         by_pose = np.array([each.by_pose for each in roundings], dtype=bool)
         self.course = Course(arm, pieces, np.array([each.half for each in roundings]), by_pose)
         self.x = grid(self.pieces, self.course.overlap)
+        if kept is not None:
+            self.x = after(self.x, kept)
         self.q = self._solved()
 
     @property

@@ -24,6 +24,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.linear import dot, matmul, norm
 from runtime.core.units import DEG
@@ -144,25 +145,41 @@ def _in_ranges(q: Array, arm: Arm) -> Flags:
     return np.asarray(((q >= arm.spec.lower - RANGE_TOLERANCE) & (q <= arm.spec.upper + RANGE_TOLERANCE)).all(axis=1))
 
 
-def woven(pieces: Sequence[Piece], found: Sequence[Rounding], arm: Arm) -> list[Rounding]:
-    """Return roundings with corners of their whole zones where moves turn little, and where that fits."""
+def woven(
+    pieces: Sequence[Piece], found: Sequence[Rounding], arm: Arm, *, stay: int = 0, after: float = 0.0
+) -> list[Rounding]:
+    """Return roundings with corners of their whole zones where moves turn little, and where that fits.
+
+    The first ``stay`` of them stay as they are, and the others begin ``after`` a place of the path, m. ``Fault`` RBL404
+    where there are none.
+    """
+    if not found:
+        return []
     gentle = np.array([_gentle(*pair, each) for pair, each in zip(itertools.pairwise(pieces), found, strict=True)])
     halves = np.array([each.half for each in found])
     zones = np.array([each.zone for each in found])
     by_pose = np.array([each.by_pose for each in found])
     ends = np.concatenate([[0.0], np.cumsum([piece.extent for piece in pieces])])
+    most = np.where(np.arange(len(halves)) < stay, halves, ends[1:-1] - after)
+    halves = np.minimum(halves, most)
+    if not (halves > 0.0).all():
+        raise Fault("RBL404", "the motion is too near to its end")
+    found = [replace(each, half=half) for each, half in zip(found, halves.tolist(), strict=True)]
     # a corner that does not fit keeps to half of its moves, and its neighbours are tried again without it
     for _ in range(_WEAVINGS):
-        wide = ordered(
-            ends, np.minimum(np.where(gentle, np.maximum(zones, halves), halves), _apart(ends, halves, by_pose))
-        )
+        fits = np.minimum(_apart(ends, halves, by_pose), most)
+        wide = np.minimum(np.where(gentle, np.maximum(zones, halves), halves), fits)
+        last = float(halves[stay - 1]) if stay else 0.0
+        wide[stay:] = ordered(ends[stay:], wide[stay:], last)
+        if stay < len(wide) and not last - wide[stay] <= ends[stay + 1] - ends[stay] + _LEAST:
+            raise Fault("RBL404", "the corners that are being passed leave no room for the next ones")
         if not (~(wide <= halves)).any():
             break
         bad = _outside(Course(arm, pieces, wide, by_pose), zones, ~(wide <= halves))
         if not bad.any():
             return [replace(each, half=half) for each, half in zip(found, wide.tolist(), strict=True)]
         gentle &= ~bad
-    return list(found)
+    return found
 
 
 def _gentle(first: Piece, second: Piece, found: Rounding) -> bool:

@@ -19,6 +19,8 @@ _AT_REST = 0.5 ** np.arange(12, 0, -1)
 _NOTHING = 1e-9
 _EVEN = 0.25
 """Least share of a step beside it that a step of the grid has."""
+_APART = 0.3
+"""Least share of a step between two points of different grids."""
 _IN_CORNER = 14
 _STEP_M = 0.004
 _LEAST_STEPS, _MOST_STEPS = 6, 240
@@ -79,3 +81,15 @@ def _with_rest(whole: Array) -> Array:
     # u is constant from point to point, so a slow speed is gained within a step only if steps at rest are short
     near = _AT_REST * np.array([[whole[1] - whole[0]], [whole[-1] - whole[-2]]])
     return np.concatenate([whole[:1], whole[0] + near[0], whole[1:-1], (whole[-1] - near[1])[::-1], whole[-1:]])
+
+
+def after(whole: Array, kept: Array) -> Array:
+    """Return the points ``kept`` (k,) of another grid, with those of a whole one (M + 1,) that come after them."""
+    return np.concatenate([kept, whole[whole > kept[-1] + _APART * (kept[-1] - kept[-2])]])
+
+
+def with_point(x: Array, place: float) -> Array:
+    """Return a grid with a point at a place within it, and without those that are too near to it."""
+    k = int(np.searchsorted(x, place))
+    near = _APART * (x[k] - x[k - 1])
+    return np.concatenate([x[:k][x[:k] < place - near], [place], x[k:][x[k:] > place + near]])

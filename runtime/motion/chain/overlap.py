@@ -61,9 +61,12 @@ class Overlap:
         return found
 
 
-def ordered(ends: Array, halves: Array) -> Array:
-    """Return halves (K - 1,) lowered until each differs from the next by no more than the move between them."""
-    found = np.concatenate([[0.0], halves, [0.0]])
+def ordered(ends: Array, halves: Array, first: float = 0.0) -> Array:
+    """Return halves (K - 1,) lowered until each differs from the next by no more than the move between them.
+
+    ``first`` is the half of the corner at the first end, which is not lowered.
+    """
+    found = np.concatenate([[first], halves, [0.0]])
     # there and back: what limits a corner may lie before it or after it
     for k in range(1, len(found) - 1):
         found[k] = min(found[k], found[k - 1] + ends[k] - ends[k - 1])

@@ -5,7 +5,7 @@ Called for chains (``joined``) and for moves that stop at both ends (``single``)
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -15,7 +15,7 @@ from runtime.core.frames import Array
 from runtime.motion.chain.chain_path import ChainPath, ToolLimits
 from runtime.motion.chain.curved import curved
 from runtime.motion.chain.piece import Piece
-from runtime.motion.chain.timing import Limits, Path, Timed, timed
+from runtime.motion.chain.timing import Begun, Limits, Path, Timed, timed
 from runtime.motion.speed_cap import PLANNED, SpeedCap
 from runtime.robot.model.drives import PathLimits
 from runtime.robot.model.spec import RobotSpec
@@ -64,7 +64,23 @@ class ChainLimits:
         return max(self.rise_s, self.path_rise_s) if bound else self.rise_s
 
 
-def paced(path: ChainPath, limits: ChainLimits) -> Timed:
+@dataclass(frozen=True, slots=True, kw_only=True)
+class Beginning:
+    """How a path begins: with the motion ``begun``, and rows at places ``before`` (B,) of it before that of its row 0.
+
+    ``open``: it may be gone on with before its end, so it keeps to the whole T of the robot.
+    """
+
+    begun: Begun | None = None
+    before: Array = field(default_factory=lambda: np.zeros(0))
+    open: bool = False
+
+
+AT_REST, OPEN = Beginning(), Beginning(open=True)
+"""Paths from rest to rest."""
+
+
+def paced(path: ChainPath, limits: ChainLimits, beginning: Beginning = AT_REST) -> Timed:
     """Return a path timed with the speeds, overrides and TIMEs of its moves; ``Fault`` RBL404 where it keeps no cap."""
     number = path.move_at(path.x)
     pieces = path.pieces
@@ -72,12 +88,13 @@ def paced(path: ChainPath, limits: ChainLimits) -> Timed:
     tool = _tool_limits(pieces, limits, number)
     bounds = path.bounds((limits.joints.speed, limits.joints.acceleration), tool, overrides)
     bounds = bounds.replaced(np.minimum(bounds.fastest, curved(path, tool, limits.path.rotation_speed)))
-    mean_s = limits.mean_s(pieces)
+    mean_s, begun = limits.mean_s(pieces), beginning.begun
     slower, under = np.ones(len(pieces)), 1.0
     for _ in range(_TIMES):
         fastest = np.minimum(bounds.fastest, _under_cap(path, limits.cap, under)) * slower[number] ** 2
-        found = timed(Path(x=path.x, bounds=bounds.replaced(fastest), joints=path.joints), limits.joints, mean_s)
-        factor = _too_quick(path, found.x, limits.joints.period_s)
+        whole = Path(x=path.x, bounds=bounds.replaced(fastest), joints=path.joints)
+        found = timed(whole, limits.joints, mean_s, begun=begun, whole=beginning.open)
+        factor = _too_quick(path, np.concatenate([beginning.before, found.x]), limits.joints.period_s)
         over = 1.0 if limits.cap is None else limits.cap.ratio(limits.cap.fine.expand(found.setpoints))
         if over <= 1.0 and not (factor < 1.0).any():
             return found

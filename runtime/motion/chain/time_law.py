@@ -63,10 +63,14 @@ class TimeLaw:
             t=np.append(self.t[:count], seconds),
         )
 
-    def since(self, seconds: float, place: float) -> "TimeLaw":
-        """Return the law from the last point before a time on; times count from there, s, and places from ``place``."""
+    def since(self, seconds: float) -> "TimeLaw":
+        """Return the law from its last point before a time on."""
         first = max(int(np.searchsorted(self.t, seconds, side="right")) - 1, 0)
-        return TimeLaw(x=self.x[first:] - place, v=self.v[first:], t=self.t[first:] - seconds)
+        return TimeLaw(x=self.x[first:], v=self.v[first:], t=self.t[first:])
+
+    def counted(self, place: float, seconds: float) -> "TimeLaw":
+        """Return the law with places and times, s, that count from others of it."""
+        return TimeLaw(x=self.x - place, v=self.v, t=self.t - seconds)
 
     def slower(self, factor: float) -> "TimeLaw":
         """Return the law in so many times its time."""
@@ -82,7 +86,7 @@ class TimeLaw:
 
     def going_on(self, period_s: float, mean_s: float) -> Array:
         """Return X (N + 1,) from time 0 on of a law that began before, one a cycle; it ends within the last."""
-        return self._means(period_s * np.arange(self._cycles(period_s, mean_s) + 1), mean_s)
+        return self._means(period_s * np.arange(self._cycles(period_s, mean_s) + 1, dtype=np.float64), mean_s)
 
     def _cycles(self, period_s: float, mean_s: float) -> int:
         return max(1, int(np.ceil((self.seconds + mean_s) / period_s - 1e-9)))

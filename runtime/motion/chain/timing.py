@@ -87,10 +87,15 @@ class Path:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class Shares:
-    """Shares (M + 1,) of ``speed`` and of the ``acceleration`` that a path takes on its grid."""
+    """Shares (M + 1,) of ``speed`` and of the ``acceleration`` that a path takes on a grid ``x`` (M + 1,)."""
 
+    x: Array
     speed: Array
     acceleration: Array
+
+    def at(self, x: Array) -> "Shares":
+        """Return the shares at other places (N,)."""
+        return Shares(x=x, speed=np.interp(x, self.x, self.speed), acceleration=np.interp(x, self.x, self.acceleration))
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -148,7 +153,7 @@ def timed(path: Path, limits: Limits, mean_s: float, *, begun: Begun | None = No
 def _at_rest(path: Path, mean_s: float, share: float) -> Begun:
     """Return what a path that begins at rest goes on from, at a share of its accelerations."""
     still = TimeLaw(x=path.x[:1], v=np.zeros(1), t=np.zeros(1))
-    shares = Shares(speed=np.ones(len(path.x)), acceleration=np.full(len(path.x), float(share)))
+    shares = Shares(x=path.x, speed=np.ones(len(path.x)), acceleration=np.full(len(path.x), float(share)))
     q = path.joints(path.x[:1])
     return Begun(
         law=still, at=0, x=np.repeat(path.x[:1], 4), setpoints=np.repeat(q, 4, axis=0), shares=shares, mean_s=mean_s
@@ -182,12 +187,13 @@ def _within_bends(path: Path, limits: Limits) -> Path:
 
 
 def _timed(path: Path, limits: Limits, begun: Begun) -> Timed:
-    speed, acceleration, mean_s = begun.shares.speed.copy(), begun.shares.acceleration.copy(), begun.mean_s
+    shares, mean_s = begun.shares.at(path.x), begun.mean_s
+    speed, acceleration = shares.speed, shares.acceleration
     around = max(1, math.ceil(0.5 * mean_s / limits.period_s)) + 1
     for round_ in range(_ROUNDS):
         law = _law(path, path.bounds.scaled(acceleration, speed), begun)
         check_duration(law.seconds + mean_s)
-        found = _along(path, law, limits.period_s, begun, Shares(speed=speed, acceleration=acceleration))
+        found = _along(path, law, limits.period_s, begun, Shares(x=path.x, speed=speed, acceleration=acceleration))
         fast, gaining, jerk = limits.passed(found.setpoints, begun.setpoints[:3])
         pace = _pace(path, found, limits.period_s, begun)
         if max((float(each.max()) for each in (fast, gaining, jerk, pace)), key=badness) <= SLACK:
@@ -202,7 +208,7 @@ def _timed(path: Path, limits: Limits, begun: Begun) -> Timed:
         _lower(path.x, acceleration, found.x, np.where(changes, jerk, 0.0).max(axis=1), (3, around), gently)
         bends = ~changes | (round_ >= _BOTH)
         _lower(path.x, speed, found.x, np.where(bends, jerk, 0.0).max(axis=1), (3, 1), gently / 3.0)
-    return _slowed(path, limits, law, Shares(speed=speed, acceleration=acceleration), begun)
+    return _slowed(path, limits, law, Shares(x=path.x, speed=speed, acceleration=acceleration), begun)
 
 
 def _rows(x: Array, begun: Begun) -> Array:

@@ -334,7 +334,7 @@ def test_a_chain_that_cannot_be_timed_stops_at_its_corners(monkeypatch):
     robot = bench("puma560")
     commands = by(robot, *RIGHT_ANGLE, zone=0.03, speed=0.4)
 
-    def refused(*_):
+    def refused(*_, **__):
         raise Fault("RBL404", "test")
 
     monkeypatch.setattr("runtime.motion.chain.paced.timed", refused)
