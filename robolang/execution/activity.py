@@ -3,6 +3,7 @@
 from dataclasses import dataclass
 from typing import TypeAlias
 
+from robolang.execution.planned_move import PlannedChain
 from robolang.execution.result import StatementRun
 from robolang.execution.tape import Taped
 from robolang.interpreter.effects import Origin
@@ -16,7 +17,7 @@ class Motion:
     """Moves that are carried out: numbers ``first`` to ``last`` of the record; readings that were ``lost`` before them.
 
     ``sent``: whether a cycle has been run; ``waited_us`` for the arm to come into position; ``skipped``: moves of the
-    chain that had been carried out when it was interrupted.
+    chain that had been carried out when it was interrupted. ``open``: the chain, where more moves may follow it.
     """
 
     first: int
@@ -25,6 +26,7 @@ class Motion:
     sent: bool = False
     waited_us: int = 0
     skipped: int = 0
+    open: PlannedChain | None = None
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)

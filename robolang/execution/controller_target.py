@@ -12,12 +12,22 @@ import numpy as np
 
 from robolang.execution.activity import Activity, Left, Motion, Pause, TargetSnapshot
 from robolang.execution.grasp import note_grasp
+from robolang.execution.lowering import tracker
 from robolang.execution.measured import AXIS_FUNCTIONS
 from robolang.execution.observer import Observer
-from robolang.execution.plan_findings import PlanFindings
-from robolang.execution.planned_move import planned_moves
+from robolang.execution.plan_warnings import PlanWarnings
+from robolang.execution.planned_move import PlannedChain, planned_moves
 from robolang.execution.result import GOES_ON, RunRecord, StatementRun
-from robolang.execution.statement_rows import copied, note_rest, rest_of, row_of, straight_path
+from robolang.execution.statement_rows import (
+    copied,
+    note_plan,
+    note_rest,
+    payload_row,
+    rest_of,
+    row_of,
+    stopped,
+    straight_path,
+)
 from robolang.execution.tape import Tape
 from robolang.execution.target import Requested
 from robolang.execution.world import RobotWorld
@@ -38,15 +48,12 @@ from robolang.interpreter.effects import (
 from robolang.interpreter.events import Failed
 from robolang.project.project import Project
 from robolang.syntax.ast import Wait
-from runtime.cell.seam_sensor import SeamSensor
 from runtime.core.faults import Alarm, Fault
 from runtime.core.frames import Array
-from runtime.core.units import MM
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.commands import Command
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.seam import SeamTracker
-from runtime.motion.speeds import Speeds
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import Payload
 
@@ -64,11 +71,10 @@ class ControllerTarget:
         self._project = record.project
         self.world = RobotWorld(record.project.points, record.project.cell, kinematics, lambda: self.time_us)
         """What the program reads of robot and cell."""
-        self._findings = PlanFindings(record.project, kinematics)
+        self._warnings = PlanWarnings(record.project, kinematics)
         self._statements = Tape(record.statements, copied)
         self._payloads, self._shown = Tape(record.payloads), Tape(record.shown)
         self._activity: Activity = None
-        self._warned: frozenset[tuple[str, Origin]] = frozenset()
 
     # --- time --------------------------------------------------------------------------------------------------------
 
@@ -201,6 +207,8 @@ class ControllerTarget:
 
     def finish(self) -> None:
         """End the statements of the activity at this tick."""
+        if not self.alarms:
+            self._close()
         activity, self._activity = self._activity, None
         tick, statements = self._record.controller.recorder.tick, self._record.statements
         if isinstance(activity, Motion):
@@ -316,26 +324,56 @@ class ControllerTarget:
         """Return the plan of a move without starting it; ``Fault`` RBL4xx."""
         return self._record.controller.rehearse(q_start, command)
 
-    def move(self, chain: Sequence[Requested]) -> None:
+    def move(self, chain: Sequence[Requested], *, more: bool = False) -> None:
         """Plan moves from the commanded position and start them; ``ChainFault`` RBL4xx."""
-        controller = self._record.controller
+        controller, commands = self._record.controller, [each.command for each in chain]
         self.statement = chain[0].effect.origin
         # planned before it is recorded: a chain that is refused leaves no statement in the record
-        plan = controller.move_chain([each.command for each in chain], [each.effect.origin for each in chain])
-        runs = [self._record_run(each.effect) for each in chain]
-        # nothing follows into which it could blend
-        runs[-1].effect = replace(chain[-1].effect, zone_mm=0.0)
-        seam = None if self._tracker is None else self._tracker.name
-        speeds = controller.requests.speeds(plan, [each.command for each in chain])
-        for at, (run, part) in enumerate(zip(runs, plan.parts, strict=True)):
-            run.path, run.notes = part.path, [*run.notes, *part.notes]
-            run.planned_s, run.speeds, run.at = part.planned_s, speeds, at
+        plan = controller.move_chain(commands, [each.effect.origin for each in chain], more=more)
+        first = len(self._record.statements)
+        self._record_moves(Motion(first=first, last=first, lost=self._lost), tuple(chain), plan, len(chain), more=more)
+        self._seen.run_began(self._record.statements[first], self.time_us)
+
+    @property
+    def more_due(self) -> bool:
+        """Whether more moves are to follow now, so that those that run go on without a stop."""
+        return isinstance(self._activity, Motion) and self._record.controller.more_due
+
+    def extend(self, chain: Sequence[Requested], *, more: bool) -> int:
+        """Plan moves after those that run; ``Fault`` RBL404 where these cannot go on."""
+        controller, motion = self._record.controller, self._activity
+        assert isinstance(motion, Motion)
+        assert motion.open is not None  # else no more is due
+        plan, over = controller.extend_chain([each.command for each in chain], [each.effect.origin for each in chain])
+        self._warnings.warn(planned_moves(motion.open, over), controller)
+        requested = (*motion.open.requested[over:], *chain)
+        begins, skipped = motion.first + max(0, over - motion.skipped), max(0, motion.skipped - over)
+        self._record_moves(replace(motion, first=begins, skipped=skipped), requested, plan, len(chain), more=more)
+        return over
+
+    def _record_moves(
+        self, motion: Motion, requested: tuple[Requested, ...], plan: ChainPlan, count: int, *, more: bool
+    ) -> None:
+        """Record the last ``count`` moves of a chain, and what is planned of all of them."""
+        statements, seam = self._record.statements, None if self._tracker is None else self._tracker.name
+        speeds = self._record.controller.requests.speeds(plan, [each.command for each in requested])
+        planned = PlannedChain(requested=requested, plan=plan, speeds=speeds)
+        for each in requested[-count:]:
+            run = self._record_run(each.effect)
             # a move has begun when its first set-point is sent (``_reach``)
-            run.wrist, run.seam, run.begun = part.wrist, seam, False
-        self._warn(chain, plan, speeds)
-        last = len(self._record.statements) - 1
-        self._activity = Motion(first=last + 1 - len(runs), last=last, lost=self._lost)
-        self._seen.run_began(runs[0], self.time_us)
+            run.seam, run.begun = seam, False
+        note_plan(statements[motion.first :], planned, motion.skipped, count)
+        self._activity = replace(motion, last=len(statements) - 1, open=planned)
+        if not more:
+            self._close()
+
+    def _close(self) -> None:
+        """Judge the moves that nothing follows any more without a stop."""
+        motion = self._activity
+        if isinstance(motion, Motion) and motion.open is not None:
+            stopped(self._record.statements[motion.last])
+            self._warnings.warn(planned_moves(motion.open), self._record.controller)
+            self._activity = replace(motion, open=None)
 
     @property
     def _tracker(self) -> SeamTracker | None:
@@ -344,16 +382,6 @@ class ControllerTarget:
     @property
     def _lost(self) -> int:
         return 0 if self._tracker is None else self._tracker.lost
-
-    def _warn(self, chain: Sequence[Requested], plan: ChainPlan, speeds: Speeds) -> None:
-        """Warn where the motion is not the one that the program states, once for a code and a statement."""
-        for move in planned_moves(chain, plan, speeds):
-            for found in self._findings.of(move):
-                origin = move.effect.origin
-                if (found.code, origin) not in self._warned:
-                    # replaced and not added to: snapshots share the set
-                    self._warned |= {(found.code, origin)}
-                    self._record.controller.warn(found.code, found.message, found.hint, origin)
 
     def _record_run(self, effect: Effect) -> StatementRun:
         tick = self._record.controller.recorder.tick
@@ -385,17 +413,7 @@ class ControllerTarget:
         """Store the payload in SDA, and in the record."""
         self._start(effect)
         self._record.controller.load(payload)
-        self._record.payloads.append(
-            {
-                "time_s": self.time_us / 1_000_000,
-                # 0: a statement that was fed, which is in no line of the file
-                "line": effect.line or None,
-                "number": effect.number,
-                "mass_kg": payload.mass,
-                # rounded: 15.7 mm, stored in m, comes back as 15.699999999999998
-                "cog_mm": [float(x) for x in np.round(payload.cog / MM, 9)],
-            }
-        )
+        self._record.payloads.append(payload_row(effect, payload, self.time_us / 1_000_000))
 
     def hand(self, effect: SetHand, cycles: int) -> None:
         """Switch the tool drive circuit."""
@@ -405,13 +423,7 @@ class ControllerTarget:
     def seam(self, effect: SetSeam) -> None:
         """Give the controller a tracker of a sensor of the cell, or none."""
         self._start(effect)
-        tracker = None
-        if effect.sensor is not None:
-            # a program spells names in any case, and effects have them in capitals
-            spec = {name.upper(): each for name, each in self._project.cell.sensors.items()}[effect.sensor]
-            read = SeamSensor(spec).read
-            tracker = SeamTracker(effect.sensor, spec.limits, self._project.profile.period_s, read)
-        self._record.controller.seam(tracker)
+        self._record.controller.seam(tracker(effect, self._project))
 
     def tool(self, effect: SetTool, X_flange_tool: Array) -> None:
         """Use another tool."""
@@ -454,7 +466,7 @@ class ControllerTarget:
             alarm.replaced(statement=place(alarm.statement)) if isinstance(alarm.statement, Origin) else alarm
             for alarm in record.acknowledged
         ]
-        self._warned = frozenset((code, place(origin)) for code, origin in self._warned)
+        self._warnings.rename(place)
         record.controller.rename(lambda line: place(line) if isinstance(line, Origin) else line)
 
     def renamed(self, left: Left, place: Callable[[Origin], Origin]) -> Left:
@@ -485,7 +497,7 @@ class ControllerTarget:
             shown=self._shown.snapshot(len(record.shown)),
             acknowledged=tuple(record.acknowledged),
             activity=self._activity,
-            warned=self._warned,
+            warned=self._warnings.given,
         )
 
     def restore(self, snapshot: TargetSnapshot) -> None:
@@ -496,4 +508,4 @@ class ControllerTarget:
         self._payloads.restore(snapshot.payloads)
         self._shown.restore(snapshot.shown)
         record.acknowledged[:] = snapshot.acknowledged
-        self._activity, self._warned = snapshot.activity, snapshot.warned
+        self._activity, self._warnings.given = snapshot.activity, snapshot.warned

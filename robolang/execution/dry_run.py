@@ -20,6 +20,7 @@ from robolang.execution.alarms import failure
 from robolang.execution.executor import Executor
 from robolang.execution.outlook import PlannedStep, waits
 from robolang.execution.plan_memory import PlanMemory
+from robolang.execution.planned_move import PlannedChain, planned_moves
 from robolang.execution.repetition import NotedWorld, Repetition
 from robolang.execution.status import ENDED, State
 from robolang.execution.target import Requested, Untimed
@@ -47,6 +48,7 @@ from runtime.core.frames import Array
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.corner import Corner
 from runtime.motion.commands import Command
+from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.speeds import Speeds
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import NO_PAYLOAD, Payload
@@ -203,6 +205,8 @@ class _DryRun(Untimed):
         self.times_us: dict[int, int] = {}
         self.steps: list[PlannedStep] = []
         self.refused: tuple[Diagnostic, ...] = ()
+        self._open: PlannedChain | None = None
+        self._starts_us = self._passed = 0
 
     @property
     def q(self) -> Array:
@@ -235,36 +239,83 @@ class _DryRun(Untimed):
         """Return the plan of a move."""
         return self._plans.plan(q_start, command, self._X_flange_tool)
 
-    def move(self, chain: Sequence[Requested]) -> None:
+    def move(self, chain: Sequence[Requested], *, more: bool = False) -> None:
         """Let moves pass: they are blended, and the command needs some cycles more to come to rest."""
         commands = [each.command for each in chain]
-        joined = self._plans.chain(self._q, commands, self._X_flange_tool)
-        speeds = Speeds(self._plans, joined, commands, self._X_flange_tool)
-        self._q = np.array(joined.parts[-1].plan.q[-1])
-        cycles = np.bincount(joined.command, minlength=len(chain))  # one for each row that is sent, the first as well
-        cycles[-1] += REST_CYCLES - 1 if len(joined.q) > 1 else 0
-        start_us = self.time_us
-        rows = zip(chain, joined.parts, [*joined.corners, None], cycles.tolist(), strict=True)
-        for number, (each, part, corner, spent) in enumerate(rows):
-            begins = self.time_us
-            self._spend(each.effect, spent)
+        plan = self._plans.chain(self._q, commands, self._X_flange_tool, more=more)
+        self._keep(tuple(chain), plan, starts_us=self.time_us)
+        if not more:
+            self._pass()
+
+    @property
+    def more_due(self) -> bool:
+        """Whether more moves are to follow those that have been planned."""
+        plan = None if self._open is None else self._open.plan
+        return plan is not None and plan.tail is not None and plan.tail.more_at is not None
+
+    def extend(self, chain: Sequence[Requested], *, more: bool) -> int:
+        """Let the moves pass that are over when more of them are planned; ``Fault`` RBL404 where these cannot go on."""
+        planned = self._open
+        assert planned is not None
+        assert planned.plan.tail is not None
+        at = planned.plan.tail.more_at
+        assert at is not None
+        try:
+            commands = [each.command for each in chain]
+            plan, over = self._plans.extend(planned.plan, at, commands, self._X_flange_tool)
+        except Fault:
+            self._pass()
+            raise
+        starts_us = self._starts_us + (planned.plan.parts[over].first if over else 0) * self._period_us
+        self._pass(over)
+        self._keep((*planned.requested[over:], *chain), plan, starts_us=starts_us)
+        if not more:
+            self._pass()
+        return over
+
+    def finish(self) -> None:
+        """Let the moves pass that nothing follows any more."""
+        self._pass()
+
+    def _keep(self, requested: tuple[Requested, ...], plan: ChainPlan, *, starts_us: int) -> None:
+        """Keep a chain whose row 0 is sent at a time, until its moves pass."""
+        speeds = Speeds(self._plans, plan, [each.command for each in requested], self._X_flange_tool)
+        self._open, self._starts_us = PlannedChain(requested=requested, plan=plan, speeds=speeds), starts_us
+        self._q = np.array(plan.parts[-1].plan.q[-1])
+
+    def _pass(self, count: int | None = None) -> None:
+        """Let so many moves pass, all without it: then the command comes to rest."""
+        planned, self._open = self._open, None
+        if planned is None:
+            return
+        plan = planned.plan
+        # one for each row that is sent, the first as well where the arm stands there
+        cycles = np.bincount(plan.command, minlength=len(plan.parts))
+        cycles[0] -= self._passed
+        if count is None:
+            cycles[-1] += REST_CYCLES - 1 if len(plan.q) > 1 else 0
+        if count != 0:
+            self._passed = int(count is not None)
+        for move, spent in zip(planned_moves(planned, count), cycles.tolist(), strict=False):
+            begins, part = self.time_us, plan.parts[move.number]
+            self._spend(move.effect, spent)
             if self.time_us >= self._most_us:  # the executor ends it there, and a run ends within this move as well
                 return
             self.moves.append(
                 RehearsedMove(
-                    effect=each.effect,
+                    effect=move.effect,
                     plan=part.plan,
-                    command=each.command,
+                    command=move.command,
                     begins_us=begins,
                     ends_us=self.time_us,
-                    sent_us=start_us + part.first * self._period_us,
-                    corner=corner,
-                    q=joined.q[part.first : part.last + 1],
+                    sent_us=self._starts_us + part.first * self._period_us,
+                    corner=move.corner,
+                    q=plan.q[part.first : part.last + 1],
                     s=part.s,
                     X_flange_tool=self._X_flange_tool,
                     payload=self._payload,
-                    speeds=speeds,
-                    number=number,
+                    speeds=planned.speeds,
+                    number=move.number,
                 )
             )
 

@@ -87,9 +87,13 @@ class Engine:
                 self._go_on()
             case Phase.BUSY:
                 # ``goes_on`` first: it notes what the last cycle did, also where a stop ends the effect
-                if target.goes_on() and not now.stop_requested:
+                goes_on = target.goes_on() and not now.stop_requested
+                if target.more_due and now.due is None and now.late is None and not now.stop_requested:
+                    now.phase, now.growing = Phase.READY, True
+                elif goes_on:
                     return False
-                self._end_effects()
+                else:
+                    self._end_effects()
             case Phase.STOPPING:
                 if not target.at_rest:
                     return False
@@ -150,13 +154,13 @@ class Engine:
     def _finish(self) -> None:
         now = self.now
         self.target.finish()
-        if now.moves or (now.playing and not now.chain):  # moves that are kept end elsewhere
+        if (now.moves or now.playing) and not now.chain:  # moves that are kept end elsewhere
             self.world.q_last = self.target.q
         for each in now.doing:
             self._seen.effect_done(each)
         now.doing, now.playing = (), False
-        if not now.chain:  # moves that are over hold no line that an edit must keep
-            now.places = ()
+        # moves that are over hold no line that an edit must keep
+        now.places = now.places[len(now.places) - len(now.chain) :]
 
     def interrupted_at(self) -> MachineSnapshot | None:
         """Return the machine at the statement that is interrupted now, None: it has not gone on since."""
@@ -197,12 +201,20 @@ class Engine:
         """Take what the program requests next, or what was due after the motion that has ended."""
         now = self.now
         try:
-            if now.due is not None:
+            if now.due is not None and now.chain:  # they could not follow those that ran
+                self._start_chain()
+            elif now.late is not None:
+                late, now.late = now.late, None
+                raise late
+            elif now.due is not None:
                 self._arrive(now.due)
             else:
                 self._take(self.machine.step())
         except Fault as fault:
-            self._refuse(fault)
+            if now.growing:
+                self._end_growth(late=fault)
+            else:
+                self._refuse(fault)
 
     def _take(self, event: Event) -> None:
         now = self.now
@@ -218,6 +230,8 @@ class Engine:
                 if effect is not None:
                     self.target.begin(effect)
                     # WRIST does not wait for the moves before it: each move carries the setting that holds for it
+                    if isinstance(effect, SetWrist) and now.growing:
+                        return
                     if isinstance(effect, MoveTo | SetWrist):
                         self._carry_out(effect)
                     else:
@@ -237,10 +251,21 @@ class Engine:
     def _after_motion(self, due: Effect | End) -> None:
         """Let the moves that are kept run first, if there are any."""
         self.now.due = due
-        if self.now.chain:
+        if self.now.growing:
+            self._end_growth()
+        elif self.now.chain:
             self._start_chain()
         else:
             self._arrive(due)
+
+    def _end_growth(self, late: Fault | None = None) -> None:
+        """Let the moves that run come to a stop, after those that are kept; then comes what is due, or ``late``."""
+        now = self.now
+        now.late = late
+        if now.chain:
+            self._start_chain()
+        else:
+            now.phase, now.growing = Phase.BUSY, False
 
     def _arrive(self, due: Effect | End) -> None:
         now = self.now
@@ -362,10 +387,11 @@ class Engine:
             target.statement = target.statement or effect.origin
             self._end_effects()
             return
+        if isinstance(effect, MoveTo):
+            self._move(effect)
+            return
         now.phase, now.doing = Phase.BUSY, (effect,)
         match effect:
-            case MoveTo():
-                self._move(effect)
             case SetHand():
                 target.hand(effect, self._cycles(lowering.dwell_s(effect, self.project.cell)))
             case Pass():
@@ -413,30 +439,47 @@ class Engine:
         if now.tracked:
             command = tracked(command)
         blends = command.zone > 0.0
-        if blends or now.chain:  # planned here, where the program can answer a refusal, and not when the chain runs
+        long = False
+        # planned here, where the program can answer a refusal, and not when the chain runs
+        if blends or now.chain or now.growing:
             plan = self.target.rehearse(world.q_last, command)
             world.q_last = plan.q[-1]
             now.chain_s = (now.chain_s if now.chain else 0.0) + plan.programmed_s
             # a move that goes nowhere has one row and no room for a blend
-            blends = blends and len(plan.q) > 1 and not self._is_long(len(now.chain) + 1)
+            blends = blends and len(plan.q) > 1
+            long = self._is_long(len(now.chain) + 1)
         # a move that blends runs when the machine is further on: where it was is kept (``interrupted_at``)
-        now.places = (*(now.places if now.chain else ()), self.machine.snapshot())
+        now.places = (*(now.places if now.chain or now.growing else ()), self.machine.snapshot())
         now.chain = (*now.chain, Requested(effect=effect, command=command))
-        if blends:
-            now.phase, now.doing = Phase.READY, ()
+        if blends and not long:
+            now.phase = Phase.READY
         else:
-            self._start_chain()
+            self._start_chain(more=blends)
 
     def _is_long(self, moves: int) -> bool:
-        """Return whether a chain of so many moves ends with a stop, whatever its last zone is."""
-        many, seconds = run_bounds.LONG_CHAIN
-        return moves >= run_bounds.MAX_CHAIN or (moves >= many and self.now.chain_s >= seconds)
+        """Return whether so many moves are enough to be planned ahead."""
+        many, seconds = run_bounds.LONG_AHEAD
+        return moves >= run_bounds.MOST_AHEAD or (moves >= many and self.now.chain_s >= seconds)
 
-    def _start_chain(self) -> None:
+    def _start_chain(self, *, more: bool = False) -> None:
+        """Start the moves that are kept, or let them follow those that run; ``more``: others may follow them."""
         now = self.now
         chain, now.chain = now.chain, ()
-        now.phase, now.doing = Phase.BUSY, tuple(each.effect for each in chain)
-        self.target.move(chain)
+        effects = tuple(each.effect for each in chain)
+        now.phase = Phase.BUSY
+        if not now.growing:
+            now.doing = effects
+            self.target.move(chain, more=more)
+            return
+        now.growing = False
+        try:
+            over = self.target.extend(chain, more=more)
+        except Fault:
+            now.chain = chain  # they start when those that run have stopped
+            return
+        for each in now.doing[:over]:
+            self._seen.effect_done(each)
+        now.doing, now.places = (*now.doing[over:], *effects), now.places[over:]
 
 
 def _failed(fault: Fault, origin: Origin | None) -> Failed:

@@ -18,16 +18,19 @@ from typing import Any
 
 import numpy as np
 
-from robolang.interpreter.effects import MoveTo, SetHand, SetPayload
+from robolang.interpreter.effects import MoveTo, SetHand, SetPayload, SetSeam
 from robolang.project.points import Point, PointStore
+from robolang.project.project import Project
 from robolang.values.poses import Frame, Place, Shift, Six
 from runtime.cell.cell import CellSpec
+from runtime.cell.seam_sensor import SeamSensor
 from runtime.core.faults import Fault
 from runtime.core.frames import Array, inverse, pose_from_xyzrpy, xyzrpy_from_pose
 from runtime.core.limits import DWELL
 from runtime.core.linear import matmul
 from runtime.core.units import DEG, MM, PERCENT
 from runtime.motion.commands import Command, MoveArc, MoveJoint, MoveLinear, MoveSpline
+from runtime.motion.seam import SeamTracker
 from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.drives import beyond_range
 from runtime.robot.model.payload import Payload, declared
@@ -244,3 +247,12 @@ def _named(table: Mapping[str, Array], name: str, what: str) -> Array:
 def dwell_s(effect: SetHand, cell: CellSpec) -> float:
     """Return the waiting time of a HAND statement, s; ``Fault`` RBL405."""
     return DWELL.checked(cell.hand.dwell if effect.dwell_s is None else effect.dwell_s)
+
+
+def tracker(effect: SetSeam, project: Project) -> SeamTracker | None:
+    """Return a tracker of the sensor of a cell that SEAM ON names, None for SEAM OFF."""
+    if effect.sensor is None:
+        return None
+    # a program spells names in any case, and effects have them in capitals
+    spec = {name.upper(): each for name, each in project.cell.sensors.items()}[effect.sensor]
+    return SeamTracker(effect.sensor, spec.limits, project.profile.period_s, SeamSensor(spec).read)

@@ -1,7 +1,8 @@
 """A move with its plan, as what compares plan and program takes it, and what it finds."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from itertools import islice
 
 from robolang.execution.target import Requested
 from robolang.interpreter.effects import MoveTo
@@ -37,11 +38,21 @@ class PlannedMove:
         return self.speeds.moves[self.number]
 
 
-def planned_moves(requested: Sequence[Requested], chain: ChainPlan, speeds: Speeds) -> Iterator[PlannedMove]:
-    """Yield the moves of a chain that has been planned, with its speeds."""
+@dataclass(frozen=True, slots=True, kw_only=True)
+class PlannedChain:
+    """Moves as ``requested``, with the ``plan`` of their chain and its ``speeds``."""
+
+    requested: tuple[Requested, ...]
+    plan: ChainPlan
+    speeds: Speeds
+
+
+def planned_moves(planned: PlannedChain, first: int | None = None) -> Iterator[PlannedMove]:
+    """Yield the ``first`` moves of a chain that has been planned, all without it."""
+    chain, speeds = planned.plan, planned.speeds
     nexts = [*(part.plan for part in chain.parts[1:]), None]
-    rows = zip(requested, chain.parts, (*chain.corners, None), nexts, strict=True)
-    for number, (each, own, corner, after) in enumerate(rows):
+    rows = zip(planned.requested, chain.parts, (*chain.corners, None), nexts, strict=True)
+    for number, (each, own, corner, after) in enumerate(islice(rows, first)):
         yield PlannedMove(
             effect=each.effect,
             command=each.command,

@@ -9,6 +9,7 @@ from robolang.interpreter.effects import Effect, MoveTo, Origin
 from robolang.interpreter.events import Done, Failed, FedEnded, LineBegun
 from robolang.interpreter.positions import Suspended
 from robolang.interpreter.snapshot import MachineSnapshot
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 
 BY_HAND = "by hand"
@@ -64,7 +65,9 @@ class Progress:
     ``request``: the effect that the program has yielded last; ``doing``: the effects that have been started; ``chain``:
     moves that are kept, since the next one may blend into them, and take ``chain_s`` s at their speeds; ``places``:
     the machine at each of these, or of those that are being done; ``due``: what comes when these have ended;
-    ``aside``: what is interrupted, the innermost last; ``playing``: set-points that were given are being sent.
+    ``growing``: more moves are requested for those that run, so that they do not stop; ``late``: a request among them
+    that is refused when they have ended. ``aside``: what is interrupted, the innermost last; ``playing``: set-points
+    that were given are being sent.
     ``ends_us``: the simulated time at which the run is too long.
 
     ``begun``: an effect of the program has been requested; ``stood`` (n,) rad: where the arm was when it was moved by
@@ -82,6 +85,8 @@ class Progress:
     chain_s: float = 0.0
     places: tuple[MachineSnapshot, ...] = ()
     due: Effect | End | None = None
+    growing: bool = False
+    late: Fault | None = None
     aside: tuple[Aside, ...] = ()
     playing: bool = False
     begun: bool = False

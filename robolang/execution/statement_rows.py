@@ -1,13 +1,15 @@
 """The rows of a record: of an effect that begins, and of what is left of one that was interrupted on its path."""
 
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from robolang.execution import lowering
 from robolang.execution.lowering import Surroundings
+from robolang.execution.planned_move import PlannedChain
 from robolang.execution.result import StatementRun
-from robolang.interpreter.effects import Effect, MoveTo
+from robolang.interpreter.effects import Effect, MoveTo, SetPayload
 from robolang.project.points import Point, PointStore
 from robolang.syntax.unparse import describe
 from robolang.values.poses import Place
@@ -16,6 +18,7 @@ from runtime.core.linear import matmul
 from runtime.core.units import MM
 from runtime.motion.path import LinePath, Path
 from runtime.motion.spline_path import SplinePath
+from runtime.robot.model.payload import Payload
 
 _SAMPLES = 1001
 _SHORT = 1.0 * MM
@@ -35,6 +38,37 @@ def row_of(effect: Effect, tick: int, points: PointStore) -> StatementRun:
         effect=effect,
         points=_named_by(effect, points),
     )
+
+
+def note_plan(runs: Sequence[StatementRun], planned: PlannedChain, skipped: int, new: int) -> None:
+    """Note in the rows of moves what is planned of them: of all times and speeds, of the ``new`` last ones the rest.
+
+    The chain has ``skipped`` moves more, before the first of them.
+    """
+    parts = planned.plan.parts[skipped:]
+    for at, (run, part) in enumerate(zip(runs, parts, strict=True), start=skipped):
+        run.planned_s, run.speeds, run.at = part.planned_s, planned.speeds, at
+    for run, part in zip(runs[-new:], parts[-new:], strict=True):
+        run.path, run.wrist, run.notes = part.path, part.wrist, [*run.notes, *part.notes]
+
+
+def stopped(run: StatementRun) -> None:
+    """Note that a move stops at its end: nothing follows into which it could blend."""
+    if isinstance(run.effect, MoveTo):
+        run.effect = replace(run.effect, zone_mm=0.0)
+
+
+def payload_row(effect: SetPayload, payload: Payload, time_s: float) -> dict[str, object]:
+    """Return what a record keeps of a LOAD."""
+    return {
+        "time_s": time_s,
+        # 0: a statement that was fed, which is in no line of the file
+        "line": effect.line or None,
+        "number": effect.number,
+        "mass_kg": payload.mass,
+        # rounded: 15.7 mm, stored in m, comes back as 15.699999999999998
+        "cog_mm": [float(x) for x in np.round(payload.cog / MM, 9)],
+    }
 
 
 def _named_by(effect: Effect, points: PointStore) -> tuple[Point, ...]:

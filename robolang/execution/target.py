@@ -51,8 +51,11 @@ class Effects(Protocol):
     def rehearse(self, q_start: Array, command: Command) -> MovePlan:
         """Return the plan of a move from q_start (n,) rad that the next one may blend into."""
 
-    def move(self, chain: Sequence[Requested]) -> None:
-        """Start moves that blend into one another; of a move without a zone a chain of one."""
+    def move(self, chain: Sequence[Requested], *, more: bool = False) -> None:
+        """Start moves that blend into one another; of a move without a zone a chain of one.
+
+        ``more``: others may follow without a stop (``extend``).
+        """
 
     def wrist(self, effect: SetWrist) -> None:
         """Take note of WRIST: every move carries the setting that holds for it."""
@@ -114,6 +117,16 @@ class Target(Effects, Protocol):
     @property
     def move_reached(self) -> int:
         """Which of the moves that were started last has been reached, from 0."""
+
+    @property
+    def more_due(self) -> bool:
+        """Whether ``extend`` is to be called now, so that the moves that run go on without a stop."""
+
+    def extend(self, chain: Sequence[Requested], *, more: bool) -> int:
+        """Let more moves follow those that run; return how many of these are over and left out from now on.
+
+        ``more`` as of ``move``. ``Fault`` RBL4xx where they cannot: the motion stops at its end.
+        """
 
     def measured(self, key: str, index: int) -> float | None:
         """Return what an axis, from 1, measures by the name of a function in ``measured``; None: there is none.
@@ -195,6 +208,15 @@ class Untimed:
     def goes_on(self) -> bool:
         """Return False: nothing goes on."""
         return False
+
+    @property
+    def more_due(self) -> bool:
+        """Return False: nothing runs that more moves could follow."""
+        return False
+
+    def extend(self, chain: Sequence[Requested], *, more: bool) -> int:
+        """Refuse: nothing runs that more moves could follow."""
+        raise RuntimeError("moves are extended on a controller only")
 
     def cycle(self) -> bool:
         """Run nothing."""

@@ -173,7 +173,7 @@ class TableTarget(Untimed):
         """Refuse: nothing blends in a table (``begin``)."""
         raise NotImplementedError
 
-    def move(self, chain: Sequence[Requested]) -> None:
+    def move(self, chain: Sequence[Requested], *, more: bool = False) -> None:
         """Turn a straight move into pulses."""
         # a chain of one: ``begin`` refuses moves that blend
         (move,) = chain

@@ -38,6 +38,7 @@ class SetAside:
     statements: tuple[ProgramLine, ...]
     given: bool
     wrist_mode: int
+    chain: ChainPlan | None
 
 
 class RequestQueue(Stateful):
@@ -53,6 +54,7 @@ class RequestQueue(Stateful):
         "_before",
         "_statements",
         "_given",
+        "_chain",
     )
     PARTS = ("interpolator",)
 
@@ -84,17 +86,18 @@ class RequestQueue(Stateful):
         self._before = 0  # moves of a row before those that the interpolator has
         self._statements: tuple[ProgramLine, ...] = ()
         self._given = False
+        self._chain: ChainPlan | None = None  # which may be extended while it runs
 
     # requests -------------------------------------------------------------------------------------------------------
 
-    def chain(self, commands: Sequence[Command], statements: Sequence[ProgramLine]) -> ChainPlan:
+    def chain(self, commands: Sequence[Command], statements: Sequence[ProgramLine], *, more: bool = False) -> ChainPlan:
         """Plan moves in a row from INA and start them; see ``Controller.move_chain``."""
         if statements and len(statements) != len(commands):
             raise ValueError(f"{len(commands)} moves have {len(statements)} statements")
         tracker = self.tracker
         if tracker is None:
             here = np.array(self._areas.ina)
-            chain = self.planner.chain(here, commands, self.X_flange_tool, self.override, self.speed_cap)
+            chain = self.planner.chain(here, commands, self.X_flange_tool, self.override, self.speed_cap, more=more)
             self.interpolator.start(chain)
         else:
             tracked = tracked_row(commands)
@@ -105,9 +108,30 @@ class RequestQueue(Stateful):
             self._waiting = [(part.plan, command) for part, command in zip(chain.parts, tracked, strict=True)]
         # -1: under a tracker ``start_waiting`` counts the first move too
         self._begin(tuple(statements), before=0 if tracker is None else -1)
+        self._chain = chain if more else None
         self.start_waiting()
         self.name_statement()
         return chain
+
+    @property
+    def more_due(self) -> bool:
+        """Whether more moves are to follow now, so that those that run go on without a stop."""
+        chain, row = self._chain, self.interpolator.row
+        if chain is None or chain.tail is None or chain.tail.more_at is None or row is None:
+            return False
+        return row >= chain.tail.more_at
+
+    def extend(self, commands: Sequence[Command], statements: Sequence[ProgramLine]) -> tuple[ChainPlan, int]:
+        """Plan moves after those that run, which go on without a stop; see ``Controller.extend_chain``."""
+        chain, row = self._chain, self.interpolator.row
+        if chain is None or row is None:
+            raise Fault("RBL404", "nothing follows the motion without a stop")
+        self._chain = None
+        grown, left_out = self.planner.extend(chain, row, commands, self.X_flange_tool, self.override, self.speed_cap)
+        self.interpolator.extend(grown, chain.parts[left_out - 1].last if left_out else 0)
+        self._chain = grown
+        self._statements = (*self._statements[left_out:], *statements)
+        return grown, left_out
 
     def play(self, rows: Array, checked: bool) -> None:
         """Send given set-points (K, n), one in each cycle; see ``Controller.play``."""
@@ -159,7 +183,7 @@ class RequestQueue(Stateful):
         self.tracker, self._waiting = tracker, []
 
     def _begin(self, statements: tuple[ProgramLine, ...], before: int) -> None:
-        self._before, self._statements, self._given = before, statements, False
+        self._before, self._statements, self._given, self._chain = before, statements, False, None
 
     def _calculated(self, tracker: SeamTracker) -> Array:
         """Return the joint angles at which the next move under a tracker begins, without deviation."""
@@ -233,7 +257,7 @@ class RequestQueue(Stateful):
     def drop(self) -> None:
         """Forget everything that is left to send."""
         self.interpolator.drop()
-        self._waiting = []
+        self._waiting, self._chain = [], None
         self.wrist_mode = FOLLOWS
 
     def set_aside(self) -> SetAside:
@@ -247,6 +271,7 @@ class RequestQueue(Stateful):
             statements=self._statements,
             given=self._given,
             wrist_mode=self.wrist_mode,
+            chain=self._chain,
         )
         self.drop()
         return left
@@ -258,7 +283,7 @@ class RequestQueue(Stateful):
         self.interpolator.restore(left.interpolator)
         # which move of which row: log and record name statements by these
         self._before, self._statements, self._given = left.before, left.statements, left.given
-        self.wrist_mode = left.wrist_mode
+        self.wrist_mode, self._chain = left.wrist_mode, left.chain
 
     # state ----------------------------------------------------------------------------------------------------------
 

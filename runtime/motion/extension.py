@@ -129,8 +129,8 @@ def _rows(*parts: _Rows) -> _Rows:
 
 
 def _part(chain: Joined, kept: slice, less: int) -> _Rows:
-    """Return rows of a row of moves, the numbers of which are so many less."""
-    command = (chain.command[kept] - less).astype(np.int32)
+    """Return rows of a row of moves, the numbers of which are so many less; the first may be one of a move before."""
+    command = np.maximum(chain.command[kept] - less, 0).astype(np.int32)
     return {"q": chain.q[kept], "setpoints": chain.setpoints[kept], "command": command, "share": chain.share[kept]}
 
 

@@ -22,18 +22,26 @@ from runtime.motion.stop import on_curve
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class _Held:
-    """Rows of a move that is paused, with their modes and commands; it rests ``at`` a place between them."""
+    """Rows of a move that is paused, with their modes and commands; it rests ``at`` a place between them.
+
+    ``own``: they are those of a plan.
+    """
 
     rows: Array
     modes: tuple[int, ...]
     commands: tuple[int, ...]
     at: float
+    own: bool
+
+
+_HISTORY = 3
+"""Set-points before one of which the command there is made."""
 
 
 class Interpolator(Stateful):
     """Hands out the set-points of one move at a time, or of moves in a row."""
 
-    VALUES = ("_rows", "_modes", "_commands", "_n", "_held", "fault")
+    VALUES = ("_rows", "_modes", "_commands", "_n", "_held", "_own", "fault")
 
     def __init__(self) -> None:
         self._rows: Array | None = None
@@ -43,6 +51,7 @@ class Interpolator(Stateful):
         """The move under a seam sensor that runs, None: another one or none. Its owner keeps and restores it."""
         self._n = 0
         self._held: _Held | None = None
+        self._own: tuple[int, int] | None = None  # from which row on they are those of the plan, and how many before it
         self.fault: Fault | None = None
         """Why the last set-point has to stop the arm: the seam cannot be followed (RBL524 to 526)."""
 
@@ -56,7 +65,27 @@ class Interpolator(Stateful):
             # a copy: the rows of the plan are those without deviation, and each is replaced in its cycle
             self._rows = np.array(self._rows)
             self._rows[0] = seam.here
-        self._n = 0
+        self._n, self._own = 0, (0, 0) if seam is None else None
+
+    def extend(self, plan: ChainPlan, left_out: int) -> None:
+        """Go on with another plan from the row that has been reached; it leaves out so many rows of the one before."""
+        row = self.row
+        if row is None:
+            raise RuntimeError("the rows of the plan do not run")
+        self._rows, self._modes, self._commands = (
+            plan.setpoints,
+            tuple(plan.modes.tolist()),
+            tuple(plan.command.tolist()),
+        )
+        self._n, self._own = row - left_out, (0, 0)
+
+    @property
+    def row(self) -> int | None:
+        """Number of the row of the plan that has been reached, None where others run: a stop, a pause, a seam."""
+        if self._own is None or self._rows is None or self._held is not None:
+            return None
+        first, before = self._own
+        return self._n + before if self._n >= first else None
 
     def stop(self, stopping: Callable[[Array, int, bool], Array]) -> None:
         """Replace the rows that are left by those of a stop, ``stopping(rows, reached, whether they end at rest)``."""
@@ -70,6 +99,7 @@ class Interpolator(Stateful):
                 rows, self.seam = np.concatenate([reached, rest]), None
             self._rows = np.concatenate([reached, stopping(rows, self._n, whole)])
             self._modes, self._commands = (mode,) * len(self._rows), (self.command,) * len(self._rows)
+            self._own = None
 
     def hold(self, pausing: Callable[[Array, int], Array]) -> None:
         """Replace the rows that are left by the places ``pausing(rows, reached)`` on them, and keep them for ``go_on``.
@@ -81,14 +111,22 @@ class Interpolator(Stateful):
         rows, at = self._rows, self._n
         course = pausing(rows, at)
         if course[-1] < len(rows) - 1:
-            self._held = _Held(rows=rows, modes=self._modes, commands=self._commands, at=float(course[-1]))
+            own = self.row == at
+            self._held = _Held(rows=rows, modes=self._modes, commands=self._commands, at=float(course[-1]), own=own)
+            self._own = None
             self._play(self._held, course, rows[: at + 1], list(range(at + 1)))
 
     def go_on(self, resuming: Callable[[Array, float], Array]) -> None:
         """Go on where ``hold`` has come to rest, at the places ``resuming(rows, rest)``."""
         held, self._held = self._held, None
         if held is not None and self._rows is not None:
-            self._play(held, resuming(held.rows, held.at), self._rows[-1:], [int(np.ceil(held.at))])
+            course = resuming(held.rows, held.at)
+            self._play(held, course, self._rows[-1:], [int(np.ceil(held.at))])
+            if held.own:
+                # once it moves on by a row a cycle, the rows are those of the plan
+                even = np.append(np.diff(course) == 1.0, True) & (course == np.floor(course))
+                first = len(course) - int(np.argmin(np.append(even[::-1], False)))
+                self._own = first + 1 + _HISTORY, len(held.rows) - len(self._rows)
 
     def _play(self, held: "_Held", course: Array, reached: Array, passed: list[int]) -> None:
         """Hand out what is at these places of held rows, after those that have been reached, numbers ``passed``."""
