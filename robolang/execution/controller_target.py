@@ -12,8 +12,9 @@ import numpy as np
 
 from robolang.execution.activity import Activity, Left, Motion, Pause, TargetSnapshot
 from robolang.execution.grasp import note_grasp
+from robolang.execution.kept_log import check_log
 from robolang.execution.lowering import tracker
-from robolang.execution.measured import AXIS_FUNCTIONS
+from robolang.execution.measured import measured
 from robolang.execution.observer import Observer
 from robolang.execution.plan_warnings import PlanWarnings
 from robolang.execution.planned_move import PlannedChain, planned_moves
@@ -116,12 +117,7 @@ class ControllerTarget:
 
     def measured(self, key: str, index: int) -> float | None:
         """Return what an axis, from 1, measures; None: no function of axes has this name. ``Fault`` RBL507."""
-        function, axes = AXIS_FUNCTIONS.get(key), self._project.cell.robot.n
-        if function is None:
-            return None
-        if not 1 <= index <= axes:
-            raise Fault("RBL507", f"{key} has the axes 1 to {axes}, no {index}")
-        return float(function.read(self._record.controller)[index - 1])
+        return measured(self._record.controller, key, index)
 
     @property
     def silent(self) -> bool:
@@ -187,23 +183,13 @@ class ControllerTarget:
     def cycle(self) -> bool:
         """Run one cycle of the controller; False when the brakes hold the arm."""
         going = self._record.controller.cycle()
-        self._check_log()
+        if not self.alarms:
+            check_log(self._record)
         motion = self._activity
         # after an alarm ``goes_on`` is not called: the move whose set-point was sent last is noted here
         if isinstance(motion, Motion) and self.alarms:
             self._reach(self._record.statements[motion.first : motion.last + 1])
         return going
-
-    def _check_log(self) -> None:
-        """Raise RBL706 where what was recorded cannot be kept: the arm stops on its path, and nothing is lost."""
-        controller = self._record.controller
-        failed, controller.recorder.failed = controller.recorder.failed, None
-        if failed is not None and not self.alarms:
-            why = failed.strerror or failed
-            kept_for = self._record.kept_for
-            without = f", or run without {kept_for}" if kept_for else ""
-            hint = f"Make room for the log{without}; the log up to here is complete."
-            controller.alarm("RBL706", f"cannot write the temporary file of the log: {why}", hint=hint)
 
     def finish(self) -> None:
         """End the statements of the activity at this tick."""
@@ -337,14 +323,16 @@ class ControllerTarget:
     @property
     def more_due(self) -> bool:
         """Whether more moves are to follow now, so that those that run go on without a stop."""
-        return isinstance(self._activity, Motion) and self._record.controller.more_due
+        return isinstance(self._activity, Motion) and self._record.controller.requests.more_due
 
     def extend(self, chain: Sequence[Requested], *, more: bool) -> int:
         """Plan moves after those that run; ``Fault`` RBL404 where these cannot go on."""
         controller, motion = self._record.controller, self._activity
         assert isinstance(motion, Motion)
         assert motion.open is not None  # else no more is due
-        plan, over = controller.extend_chain([each.command for each in chain], [each.effect.origin for each in chain])
+        plan, over = controller.requests.extend(
+            [each.command for each in chain], [each.effect.origin for each in chain]
+        )
         self._warnings.warn(planned_moves(motion.open, over), controller)
         requested = (*motion.open.requested[over:], *chain)
         begins, skipped = motion.first + max(0, over - motion.skipped), max(0, motion.skipped - over)

@@ -285,6 +285,7 @@ class _DryRun(Untimed):
 
     def _pass(self, count: int | None = None) -> None:
         """Let so many moves pass, all without it: then the command comes to rest."""
+        # what is left of it after these is part of the next plan
         planned, self._open = self._open, None
         if planned is None:
             return

@@ -86,14 +86,7 @@ class Engine:
             case Phase.READY:
                 self._go_on()
             case Phase.BUSY:
-                # ``goes_on`` first: it notes what the last cycle did, also where a stop ends the effect
-                goes_on = target.goes_on() and not now.stop_requested
-                if target.more_due and now.due is None and now.late is None and not now.stop_requested:
-                    now.phase, now.growing = Phase.READY, True
-                elif goes_on:
-                    return False
-                else:
-                    self._end_effects()
+                return self._busy_went_on()
             case Phase.STOPPING:
                 if not target.at_rest:
                     return False
@@ -104,6 +97,19 @@ class Engine:
                 return False
             case _:
                 assert_never(now.phase)
+        return True
+
+    def _busy_went_on(self) -> bool:
+        """Go on with what has been started: request more moves, end it, or return False for a cycle of it."""
+        target, now = self.target, self.now
+        # ``goes_on`` first: it notes what the last cycle did, also where a stop ends the effect
+        goes_on = target.goes_on()
+        if now.grows and target.more_due and not now.stop_requested:
+            now.phase, now.growing = Phase.READY, True
+        elif goes_on and not now.stop_requested:
+            return False
+        else:
+            self._end_effects()
         return True
 
     def _interrupted(self) -> bool:
@@ -201,13 +207,8 @@ class Engine:
         """Take what the program requests next, or what was due after the motion that has ended."""
         now = self.now
         try:
-            if now.due is not None and now.chain:  # they could not follow those that ran
-                self._start_chain()
-            elif now.late is not None:
-                late, now.late = now.late, None
-                raise late
-            elif now.due is not None:
-                self._arrive(now.due)
+            if not now.grows:
+                self._end_motion()
             else:
                 self._take(self.machine.step())
         except Fault as fault:
@@ -215,6 +216,17 @@ class Engine:
                 self._end_growth(late=fault)
             else:
                 self._refuse(fault)
+
+    def _end_motion(self) -> None:
+        """Take what was due after the motion that has ended."""
+        now = self.now
+        if now.chain:  # these moves could not follow those that ran
+            self._start_chain()
+        elif now.late is not None:
+            late, now.late = now.late, None
+            raise late
+        elif now.due is not None:
+            self._arrive(now.due)
 
     def _take(self, event: Event) -> None:
         now = self.now
@@ -438,8 +450,7 @@ class Engine:
         command = lowering.move(effect, world.around, self.project.profile.acceleration)
         if now.tracked:
             command = tracked(command)
-        blends = command.zone > 0.0
-        long = False
+        blends, long = command.zone > 0.0, False
         # planned here, where the program can answer a refusal, and not when the chain runs
         if blends or now.chain or now.growing:
             plan = self.target.rehearse(world.q_last, command)
@@ -448,9 +459,7 @@ class Engine:
             # a move that goes nowhere has one row and no room for a blend
             blends = blends and len(plan.q) > 1
             long = self._is_long(len(now.chain) + 1)
-        # a move that blends runs when the machine is further on: where it was is kept (``interrupted_at``)
-        now.places = (*(now.places if now.chain or now.growing else ()), self.machine.snapshot())
-        now.chain = (*now.chain, Requested(effect=effect, command=command))
+        now.keep(Requested(effect=effect, command=command), self.machine.snapshot())
         if blends and not long:
             now.phase = Phase.READY
         else:
@@ -477,6 +486,7 @@ class Engine:
         except Fault:
             now.chain = chain  # they start when those that run have stopped
             return
+        # a motion without end would keep all that it ever did
         for each in now.doing[:over]:
             self._seen.effect_done(each)
         now.doing, now.places = (*now.doing[over:], *effects), now.places[over:]

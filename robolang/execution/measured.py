@@ -11,6 +11,7 @@ from types import MappingProxyType
 import numpy as np
 
 from runtime.control.controller import Controller
+from runtime.core.faults import Fault
 from runtime.core.frames import Array
 
 
@@ -60,3 +61,13 @@ _TABLE = (
 
 AXIS_FUNCTIONS = MappingProxyType({function.name: function for function in _TABLE})
 """Every function of an axis by its name."""
+
+
+def measured(controller: Controller, key: str, index: int) -> float | None:
+    """Return what an axis, from 1, measures; None: no function of axes has this name. ``Fault`` RBL507."""
+    function, axes = AXIS_FUNCTIONS.get(key), controller.spec.n
+    if function is None:
+        return None
+    if not 1 <= index <= axes:
+        raise Fault("RBL507", f"{key} has the axes 1 to {axes}, no {index}")
+    return float(function.read(controller)[index - 1])

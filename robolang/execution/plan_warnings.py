@@ -11,7 +11,7 @@ from runtime.robot.kinematics.kinematics import Kinematics
 
 
 class PlanWarnings:
-    """Warns on a controller; ``given`` are the codes and statements of what was said."""
+    """Warns on a controller; ``given`` are the codes and statements that it has warned of."""
 
     def __init__(self, project: Project, kinematics: Kinematics) -> None:
         self._findings = PlanFindings(project, kinematics)
@@ -21,10 +21,10 @@ class PlanWarnings:
         """Say what is found of moves."""
         for move in moves:
             for found in self._findings.of(move):
-                said = (found.code, move.effect.origin)
-                if said not in self.given:
+                warning = (found.code, move.effect.origin)
+                if warning not in self.given:
                     # replaced and not added to: snapshots share the set
-                    self.given |= {said}
+                    self.given |= {warning}
                     controller.warn(found.code, found.message, found.hint, move.effect.origin)
 
     def rename(self, place: Callable[[Origin], Origin]) -> None:

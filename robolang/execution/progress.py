@@ -65,7 +65,7 @@ class Progress:
     ``request``: the effect that the program has yielded last; ``doing``: the effects that have been started; ``chain``:
     moves that are kept, since the next one may blend into them, and take ``chain_s`` s at their speeds; ``places``:
     the machine at each of these, or of those that are being done; ``due``: what comes when these have ended;
-    ``growing``: more moves are requested for those that run, so that they do not stop; ``late``: a request among them
+    ``growing``: more moves are requested for those that run, which then do not stop; ``late``: a request among them
     that is refused when they have ended. ``aside``: what is interrupted, the innermost last; ``playing``: set-points
     that were given are being sent.
     ``ends_us``: the simulated time at which the run is too long.
@@ -102,6 +102,17 @@ class Progress:
     failed: Suspended | None = None
 
     @property
+    def grows(self) -> bool:
+        """Whether the program may go on: nothing waits for the end of a motion."""
+        return self.due is None and self.late is None
+
+    @property
     def moves(self) -> bool:
         """Whether what has been started is a move of the program."""
         return any(isinstance(each, MoveTo) for each in self.doing)
+
+    def keep(self, move: Requested, place: MachineSnapshot) -> None:
+        """Keep a move, with the machine at it, after those that are kept or run."""
+        # it runs when the machine is further on: where it was is kept (``Engine.interrupted_at``)
+        self.places = (*(self.places if self.chain or self.growing else ()), place)
+        self.chain = (*self.chain, move)

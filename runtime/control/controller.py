@@ -116,24 +116,10 @@ class Controller:
 
         ``statements``, one for each: ``statement`` becomes that of a move with the cycle that sends its first row, in
         the middle of a blend. Under a seam sensor moves are straight and do not blend: zones are taken as 0. ``more``:
-        other moves may follow without a stop (``extend_chain``).
+        other moves may follow without a stop (``RequestQueue.extend``).
         """
         self._refuse_while_latched()
         return self.requests.chain(commands, statements, more=more)
-
-    @property
-    def more_due(self) -> bool:
-        """Whether more moves are to follow those that run now, so that they go on without a stop."""
-        return self.requests.more_due
-
-    def extend_chain(self, commands: Sequence[Command], statements: Sequence[ProgramLine]) -> tuple[ChainPlan, int]:
-        """Let more moves follow those that run; return the plan from now on, and how many moves it leaves out.
-
-        These are over: the moves that it begins with run. ``Fault`` RBL4xx where the motion cannot go on; it stops at
-        its end then, and may be followed by another one.
-        """
-        self._refuse_while_latched()
-        return self.requests.extend(commands, statements)
 
     def play(self, rows: Array, checked: bool = True) -> None:
         """Send joint set-points (K, n) rad, one in each cycle from the next one on, in place of a planned move.

@@ -122,7 +122,11 @@ class RequestQueue(Stateful):
         return row >= chain.tail.more_at
 
     def extend(self, commands: Sequence[Command], statements: Sequence[ProgramLine]) -> tuple[ChainPlan, int]:
-        """Plan moves after those that run, which go on without a stop; see ``Controller.extend_chain``."""
+        """Let more moves follow those that run; return the plan from now on, and how many moves it leaves out.
+
+        These are over: the moves that it begins with run. ``Fault`` RBL4xx where the motion cannot go on; it stops at
+        its end then, and another one may follow.
+        """
         chain, row = self._chain, self.interpolator.row
         if chain is None or row is None:
             raise Fault("RBL404", "nothing follows the motion without a stop")

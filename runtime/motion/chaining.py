@@ -141,20 +141,25 @@ def _runs(
     """Return moves between two stops as one path; as moves that stop where it cannot be timed, or takes longer."""
     if plans[0].piece is None or (len(plans) == 1 and not beginning.open):
         return [_alone(plans[0], arm, limits)]
-    path = ChainPath(arm, [piece_of(plan) for plan in plans], woven([piece_of(plan) for plan in plans], rounded, arm))
+    pieces = [piece_of(plan) for plan in plans]
+    path = ChainPath(arm, pieces, woven(pieces, rounded, arm))
     try:
         found = paced(path, limits, beginning)
     except Fault:
         return [_alone(plan, arm, limits) for plan in plans]
     # but for splines, drafts are never longer than what they stand for
-    if len(found.x) - 1 > sum(len(plan.q) - 1 for plan in plans):
+    if len(found.x) - 1 > _cycles(plans):
         alone = [_alone(plan, arm, limits) for plan in plans]
-        if len(found.x) - 1 > sum(len(run.q) - 1 for run in alone):
+        if len(found.x) - 1 > _cycles(alone):
             return alone
     going = Going.from_rest(path, found)
     number, share = path.move_at(found.x), path.share_at(found.x)
     corners = corners_of(going, zones)
     return [_Run(q=found.q, setpoints=found.setpoints, number=number, share=share, corners=corners, going=going)]
+
+
+def _cycles(moves: Sequence[MovePlan | _Run]) -> int:
+    return sum(len(move.q) - 1 for move in moves)
 
 
 def _alone(plan: MovePlan, arm: Arm, limits: ChainLimits) -> _Run:

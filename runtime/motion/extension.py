@@ -49,6 +49,7 @@ def extended(
     more = _following(tail, plans[-len(zones) :], zones, arm)
     going, first = _gone_on(tail, at, more, limits)
     move, count = tail.move + first, len(more[0])
+    # the moves of the path that are over stay in it, so that its first corners keep their numbers
     left_out = min(move, int(chain.command[at]))
     move -= left_out
     begins = chain.lasts[left_out - 1] if left_out else 0
@@ -73,6 +74,7 @@ def _from_rest(
     """Return a row of moves whose last path begins at rest, and does so anew with more moves."""
     left_out = min(tail.move, int(chain.command[tail.row]))
     begins = chain.lasts[left_out - 1] if left_out else 0
+    # nothing of the path has been run: all of its corners may become as large as what follows lets them
     whole = [*(each.zone for each in tail.going.path.roundings), tail.zone, *zones]
     rest = joined(plans[tail.move :], whole, arm, limits, more=True)
     if not tail.move > left_out:

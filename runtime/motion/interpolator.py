@@ -84,6 +84,7 @@ class Interpolator(Stateful):
         """Number of the row of the plan that has been reached, None where others run: a stop, a pause, a seam."""
         if self._own is None or self._rows is None or self._held is not None:
             return None
+        # a while after a pause: the first set-points after it are none of the plan
         first, before = self._own
         return self._n + before if self._n >= first else None
 

@@ -24,6 +24,7 @@ class Taken:
 
     ``override``, share of all speeds, and the limits of the tool, m/s2, rad/s and rad/s2, infinite on joint moves.
     ``cap``, m/s, is what the point of the tool ``X_flange_tool`` (4, 4) and the flange keep to, infinite without one.
+    ``moving``: the chain begins in motion, which is taken to be even until then.
     """
 
     q: Array
@@ -34,6 +35,7 @@ class Taken:
     turning_acceleration: Array
     cap: float
     X_flange_tool: Array
+    moving: bool = False
 
 
 @dataclass(frozen=True, slots=True, kw_only=True)
@@ -66,11 +68,11 @@ def limit_use(taken: Taken, kinematics: Kinematics, limits: Limits) -> LimitUse:
     X = matmul(flange, taken.X_flange_tool)
     steps = np.diff(X[:, :3, 3], axis=0) / h
     tool = _lengths(steps)
-    gained = np.diff(_at_rest(steps), axis=0) / h
+    gained = np.diff(_between(steps, taken.moving), axis=0) / h
     turning = rotation_angles(X[:-1, :3, :3], X[1:, :3, :3]) / h
     # the cap holds for the flange as well, which may be the faster one
     fastest = np.maximum(tool, _lengths(np.diff(flange[:, :3, 3], axis=0)) / h)
-    joints = _joints(taken.setpoints, limits)
+    joints = _joints(taken.setpoints, limits, taken.moving)
     # an override is a share of the limits of speeds
     joints[0] /= taken.override[:, None]
     return LimitUse(
@@ -79,20 +81,21 @@ def limit_use(taken: Taken, kinematics: Kinematics, limits: Limits) -> LimitUse:
         turning=np.stack(
             [
                 turning / (taken.turning_speed * taken.override),
-                _either_end(np.abs(np.diff(_at_rest(turning))) / h) / taken.turning_acceleration,
+                _either_end(np.abs(np.diff(_between(turning, taken.moving))) / h) / taken.turning_acceleration,
             ]
         ),
         gaining=_either_end(_lengths(gained)) / taken.acceleration,
-        across=_either_end(_across(gained, steps)) / taken.acceleration,
+        across=_either_end(_across(gained, steps, taken.moving)) / taken.acceleration,
         cap=fastest / taken.cap,
     )
 
 
-def _joints(setpoints: Array, limits: Limits) -> Array:
+def _joints(setpoints: Array, limits: Limits, moving: bool) -> Array:
     """Return the shares (3, N, n) of speed, acceleration and jerk that the joints take."""
     h = limits.period_s
     # two set-points alike stand before the first and after the last
-    steps = np.diff(np.concatenate([setpoints[:1], setpoints, setpoints[-1:]]), axis=0)
+    before = 2.0 * setpoints[:1] - setpoints[1:2] if moving else setpoints[:1]
+    steps = np.diff(np.concatenate([before, setpoints, setpoints[-1:]]), axis=0)
     second = np.diff(steps, axis=0)
     third = np.diff(second, axis=0)
     shares = (
@@ -103,10 +106,10 @@ def _joints(setpoints: Array, limits: Limits) -> Array:
     return np.stack(shares)
 
 
-def _at_rest(values: Array) -> Array:
-    """Return values (N, ...) between a zero before and one after them (N + 2, ...)."""
+def _between(values: Array, moving: bool) -> Array:
+    """Return values (N, ...) between those before and after them (N + 2, ...): zeros, and the first where it moves."""
     still = np.zeros_like(values[:1])
-    return np.concatenate([still, values, still])
+    return np.concatenate([values[:1] if moving else still, values, still])
 
 
 def _either_end(values: Array) -> Array:
@@ -118,9 +121,9 @@ def _lengths(vectors: Array) -> Array:
     return np.asarray(np.sqrt((vectors**2).sum(axis=-1)))
 
 
-def _across(gained: Array, steps: Array) -> Array:
+def _across(gained: Array, steps: Array, moving: bool) -> Array:
     """Return the part (N + 1,) of accelerations (N + 1, 3) that lies across the motion at speeds (N, 3)."""
-    between = _at_rest(steps)
+    between = _between(steps, moving)
     along = between[:-1] + between[1:]
     size = np.maximum(_lengths(along), 1e-12)
     with_it = (gained * along).sum(axis=1) / size

@@ -124,7 +124,11 @@ class MoveTimes:
     def expected_s(self) -> list[float]:
         """What the speed of each move and the accelerations of the path let expect, s; 0 where no path is."""
         moves = [self._as_programmed(k) for k in range(len(self._commands))]
-        return [time for stretch in self.stretches for time in expected_s(moves[stretch.start : stretch.stop])]
+        return [
+            time
+            for k, stretch in enumerate(self.stretches)
+            for time in expected_s(moves[stretch.start : stretch.stop], moving=k == 0 and self._chain.moving)
+        ]
 
     def slower(self, k: int) -> float:
         """Return the speed, m/s, without override, that lets a move between two stops expect the time it takes."""

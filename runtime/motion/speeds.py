@@ -163,6 +163,7 @@ class Speeds:
             turning_acceleration=(spec.path.rotation_acceleration * most)[number],
             cap=np.inf if self._cap is None else self._cap * PLANNED,
             X_flange_tool=self._X_flange_tool,
+            moving=self.chain.moving,
         )
         return limit_use(taken, self._planner.kinematics, self._planner.limits.joints)
 
@@ -410,7 +411,9 @@ class Speeds:
         spans, corners = self.times.spans, self.chain.corners
         bounds = [stretch.start for stretch in self.times.stretches[1:]]
         meant = [spans[k].begins for k in bounds if not corners[k - 1].radius > 0.0]
-        return np.array([0.0, *meant, len(self.times.x) - 1.0])
+        # far before the first cycle, where it begins in motion
+        begins = -np.inf if self.chain.moving else 0.0
+        return np.array([begins, *meant, len(self.times.x) - 1.0])
 
     def _stands(self, cycles: NDArray[np.intp]) -> NDArray[np.bool_]:
         """Return whether cycles (N,) are beside a stop."""

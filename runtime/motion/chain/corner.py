@@ -155,30 +155,33 @@ def woven(
     """
     if not found:
         return []
-    gentle = np.array([_gentle(*pair, each) for pair, each in zip(itertools.pairwise(pieces), found, strict=True)])
-    halves = np.array([each.half for each in found])
-    zones = np.array([each.zone for each in found])
-    by_pose = np.array([each.by_pose for each in found])
     ends = np.concatenate([[0.0], np.cumsum([piece.extent for piece in pieces])])
-    most = np.where(np.arange(len(halves)) < stay, halves, ends[1:-1] - after)
-    halves = np.minimum(halves, most)
-    if not (halves > 0.0).all():
+    most = np.concatenate([[each.half for each in found[:stay]], ends[1 + stay : -1] - after])
+    if not (most > 0.0).all():
         raise Fault("RBL404", "the motion is too near to its end")
-    found = [replace(each, half=half) for each, half in zip(found, halves.tolist(), strict=True)]
+    found = [replace(each, half=min(each.half, room)) for each, room in zip(found, most.tolist(), strict=True)]
+    gentle = np.array([_gentle(*pair, each) for pair, each in zip(itertools.pairwise(pieces), found, strict=True)])
+    halves, zones, by_pose = (np.array([getattr(each, name) for each in found]) for name in ("half", "zone", "by_pose"))
     # a corner that does not fit keeps to half of its moves, and its neighbours are tried again without it
     for _ in range(_WEAVINGS):
         fits = np.minimum(_apart(ends, halves, by_pose), most)
-        wide = np.minimum(np.where(gentle, np.maximum(zones, halves), halves), fits)
-        last = float(halves[stay - 1]) if stay else 0.0
-        wide[stay:] = ordered(ends[stay:], wide[stay:], last)
-        if stay < len(wide) and not last - wide[stay] <= ends[stay + 1] - ends[stay] + _LEAST:
-            raise Fault("RBL404", "the corners that are being passed leave no room for the next ones")
+        wide = _widened(ends, np.minimum(np.where(gentle, np.maximum(zones, halves), halves), fits), stay)
         if not (~(wide <= halves)).any():
             break
         bad = _outside(Course(arm, pieces, wide, by_pose), zones, ~(wide <= halves))
         if not bad.any():
             return [replace(each, half=half) for each, half in zip(found, wide.tolist(), strict=True)]
         gentle &= ~bad
+    return found
+
+
+def _widened(ends: Array, halves: Array, stay: int) -> Array:
+    """Return halves (K - 1,), in order after the first ``stay``; ``Fault`` RBL404 where these are not in order."""
+    last = float(halves[stay - 1]) if stay else 0.0
+    found = np.concatenate([halves[:stay], ordered(ends[stay:], halves[stay:], last)])
+    # what is being passed cannot become smaller
+    if stay < len(found) and not last - found[stay] <= ends[stay + 1] - ends[stay] + _LEAST:
+        raise Fault("RBL404", "the corners that are being passed leave no room for the next ones")
     return found
 
 

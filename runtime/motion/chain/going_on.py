@@ -71,7 +71,7 @@ class Going:
         """Return the place up to which corners stay as they are when more moves follow."""
         pieces, ends = self.path.pieces, self.path.ends
         # m of the path in a m of the zone; of a joint move that is not known
-        wide = np.array([1.0 if p.path is None else p.extent / max(p.path.length, 1e-9) for p in pieces])
+        wide = np.array([1.0 if p.path is None else p.extent / (p.path.length or p.extent) for p in pieces])
         zones = np.array([*(each.zone for each in self.path.roundings), zone]) * np.maximum(wide, 1.0)
         return float((ends[1:] - zones)[ends[1:] + zones > ends[-1]].min())
 
@@ -90,6 +90,7 @@ def gone_on(
     ``override`` is that of all pieces from now on, None: theirs. ``Fault`` RBL404 where no timing is found.
     """
     found, path, h = going.timed, going.path, limits.joints.period_s
+    # what can still be changed: the mean over T carries the rest on
     law = found.law.until(min((row + lead) * h, found.law.seconds))
     seam = float(law.x[-1])
     at = int(np.searchsorted(path.x, seam))
@@ -106,6 +107,7 @@ def gone_on(
         roundings = woven(pieces, roundings, path.arm, stay=max(begun_corners - first, 0), after=last - offset)
     if override is not None:
         pieces = [replace(piece, override=override) for piece in pieces]
+    # in other points of the grid the same path would have other bounds
     kept = with_point(path.x[: at + _MARGIN + 1], seam)
     longer = ChainPath(path.arm, pieces, roundings, kept[kept >= offset] - offset)
     shares = _shares(found, ends=not more[0], settling_s=found.mean_s + _SETTLING * h)
@@ -121,6 +123,7 @@ def gone_on(
     )
     # the pieces that are left know when they began
     before = places[max(int(np.searchsorted(places, 0.0)) - 1, 0) : -1]
+    # the whole T, as what runs: a shorter one would not be a mean of both
     found = paced(longer, limits, Beginning(begun=begun, before=before, open=True))
     return Going(path=longer, timed=found, before=before, sent=sent[:3]), first
 

@@ -91,5 +91,6 @@ def after(whole: Array, kept: Array) -> Array:
 def with_point(x: Array, place: float) -> Array:
     """Return a grid with a point at a place within it, and without those that are too near to it."""
     k = int(np.searchsorted(x, place))
+    # differences over a tiny step would be rounding
     near = _APART * (x[k] - x[k - 1])
     return np.concatenate([x[:k][x[:k] < place - near], [place], x[k:][x[k:] > place + near]])

@@ -87,6 +87,7 @@ def raised(x: Array, bounds: Bounds, start: float) -> Bounds:
         if not value > fastest[k]:
             break
         fastest[k] = value
+        # u as low as the rows allow
         value += width * float((span.below[k] * value - span.least[k]).max())
     return bounds.replaced(fastest)
 
