@@ -287,7 +287,7 @@ class _DryRun(Untimed):
         """Let so many moves pass, all without it: then the command comes to rest."""
         # what is left of it after these is part of the next plan
         planned, self._open = self._open, None
-        if planned is None:
+        if planned is None or self.time_us >= self._most_us:
             return
         plan = planned.plan
         # one for each row that is sent, the first as well where the arm stands there

@@ -104,7 +104,8 @@ class Engine:
         target, now = self.target, self.now
         # ``goes_on`` first: it notes what the last cycle did, also where a stop ends the effect
         goes_on = target.goes_on()
-        if now.grows and target.more_due and not now.stop_requested:
+        ends = now.stop_requested or target.time_us >= now.ends_us
+        if now.grows and target.more_due and not ends:
             now.phase, now.growing = Phase.READY, True
         elif goes_on and not now.stop_requested:
             return False

@@ -147,8 +147,8 @@ def _runs(
         found = paced(path, limits, beginning)
     except Fault:
         return [_alone(plan, arm, limits) for plan in plans]
-    # but for splines, drafts are never longer than what they stand for
-    if len(found.x) - 1 > _cycles(plans):
+    # but for splines, drafts are never longer than what they stand for; and what goes on does not stop at its end
+    if len(found.x) - 1 > _cycles(plans) and not beginning.open:
         alone = [_alone(plan, arm, limits) for plan in plans]
         if len(found.x) - 1 > _cycles(alone):
             return alone
@@ -208,6 +208,8 @@ def piece_of(plan: MovePlan) -> Piece:
 def corners_of(going: Going, zones: Sequence[float]) -> tuple[Corner, ...]:
     """Return what became of the corners of a path as it runs; ``zones`` m are those programmed."""
     path, x, course = going.path, going.x, going.path.course
+    if not len(zones):
+        return ()
     halves, middles = course.overlap.halves[1:-1], course.ends[1:-1]
     places = middles[:, None] + halves[:, None] * _AROUND
     # one after the other, since corners may overlap

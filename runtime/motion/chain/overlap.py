@@ -22,6 +22,10 @@ Numbers: TypeAlias = NDArray[np.intp]
 Flags: TypeAlias = NDArray[np.bool_]
 
 
+_TOUCHING = 1e-12
+"""Corners overlap by less, m, by rounding alone."""
+
+
 class Overlap:
     """Moves between ``ends`` (K + 1,), with the ``halves`` (K - 1,) of the corners between them."""
 
@@ -36,7 +40,8 @@ class Overlap:
     def running(self, x: Array) -> tuple[Numbers, Numbers]:
         """Return the first and the last move, (N,) each, that run at places x (N,)."""
         most = len(self.extents) - 1
-        first = np.minimum(np.searchsorted(self.finishes, x, side="right"), most)
+        # corners that share a move between them touch up to rounding, and do not overlap
+        first = np.minimum(np.searchsorted(self.finishes - _TOUCHING, x, side="right"), most)
         last = np.maximum(np.searchsorted(self.starts, x, side="left") - 1, first)
         return first, last
 

@@ -62,3 +62,11 @@ def test_a_mixed_value_goes_over_from_move_to_move_and_is_each_ones_own_where_it
         assert (mixed[inside] <= around.max() + 1e-12).all(), k
         assert (mixed[inside] >= around.min() - 1e-12).all(), k
     assert (mixed[0], mixed[-1]) == pytest.approx((values[0], values[-1]))
+
+
+def test_corners_that_share_a_move_between_them_do_not_overlap_by_rounding():
+    touching = Overlap(np.array([0.0, 0.1, 0.4, 0.5]), np.array([0.15 + 1e-16, 0.15]))
+    assert touching.starts[2] < touching.finishes[0]
+    places = np.linspace(touching.starts[2], touching.finishes[0], 5)
+    first, last = touching.running(places)
+    assert (last - first <= 1).all()
