@@ -333,6 +333,7 @@ class ControllerTarget:
         plan, over = controller.requests.extend(
             [each.command for each in chain], [each.effect.origin for each in chain]
         )
+        # of the others corners and speeds are those of a stop that does not come
         self._warnings.warn(planned_moves(motion.open, over), controller)
         requested = (*motion.open.requested[over:], *chain)
         begins, skipped = motion.first + max(0, over - motion.skipped), max(0, motion.skipped - over)

@@ -130,6 +130,7 @@ class RequestQueue(Stateful):
         chain, row = self._chain, self.interpolator.row
         if chain is None or row is None:
             raise Fault("RBL404", "nothing follows the motion without a stop")
+        # where it is refused it is not due again
         self._chain = None
         grown, left_out = self.planner.extend(chain, row, commands, self.X_flange_tool, self.override, self.speed_cap)
         self.interpolator.extend(grown, chain.parts[left_out - 1].last if left_out else 0)

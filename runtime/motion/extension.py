@@ -62,6 +62,7 @@ def extended(
         ),
         tail=tail_of(going, (at - begins, move), zones[count - 1], limits),
     )
+    # what follows a stop begins from rest there, planned as any other row of moves
     rest = plans[len(plans) - len(zones) + count :]
     if rest:
         grown = _then(grown, zones[count - 1], joined(rest, zones[count:], arm, limits, more=True))

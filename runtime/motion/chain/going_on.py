@@ -60,6 +60,7 @@ class Going:
     def more_at(self, zone: float, period_s: float) -> int | None:
         """Return the last row that stays when it goes on over more moves; ``zone`` m at its end. None: it ends."""
         law, path = self.timed.law, self.path
+        # a corner that is being passed keeps its size, so none of them may depend on what follows
         latest = np.flatnonzero(path.x < self._settled(zone))
         if len(latest) <= _MARGIN:
             return None
@@ -101,6 +102,7 @@ def gone_on(
     offset, last = float(path.ends[first]), float(path.x[at + _MARGIN])
     pieces, roundings = [*path.pieces[first:], *more[0]], [*path.roundings[first:], *more[1]]
     if more[0]:
+        # the mean over a shorter time would pass the jerk of the new moves
         if not limits.mean_s(pieces) <= found.mean_s * SLACK:
             raise Fault("RBL404", "the moves that follow build up their accelerations in a longer time")
         begun_corners = int(np.count_nonzero(path.ends[1:-1] - halves[1:-1] < last))
@@ -132,6 +134,7 @@ def _shares(found: Timed, *, ends: bool, settling_s: float) -> Shares:
     """Return the shares with which a motion goes on: where it does not end as before, without those of its stop."""
     if ends:
         return found.shares
+    # the last braking begins where the speed falls for the last time
     v, law = found.law.v, found.law
     falls = len(v) - 1 - int(np.argmin(np.append((v[:-1] >= v[1:])[::-1], False)))
     stop = float(np.interp(float(law.t[falls]) - settling_s, law.t, law.x))

@@ -95,6 +95,7 @@ class TimeLaw:
         # the mean at rest before the start and after the end: the law stands there
         found = self._mean(times, mean_s) if mean_s > 0.0 else self._place(times)
         found[-1] = self.x[-1]
+        # to the last bit where the arm is
         if not self.t[0] < 0.0:
             found[0] = self.x[0]
         return np.asarray(np.clip(np.maximum.accumulate(found), self.x[0], self.x[-1]))

@@ -139,6 +139,7 @@ def timed(path: Path, limits: Limits, mean_s: float, *, begun: Begun | None = No
 
     ``begun``: it goes on from that motion; ``whole``: T is not shortened for a short motion.
     """
+    # before it is cut: third differences reach beyond the place where it begins
     path = _within_bends(path, limits)
     if begun is not None:
         return _timed(path.since(begun.at), limits, begun)
@@ -264,6 +265,7 @@ def _along(path: Path, law: TimeLaw, period_s: float, begun: Begun, shares: Shar
     set-points of the joints follow it without swinging.
     """
     mean_s = begun.mean_s
+    # what runs cannot be stretched: only a motion from rest takes whole cycles
     if begun.moves:
         sampled = law.going_on(period_s, mean_s)
     else:

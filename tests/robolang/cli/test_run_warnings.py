@@ -15,7 +15,7 @@ NEVER = ("--set", "in_position_deg=1e-9", "--set", "settle_timeout_s=0")
 
 TEXT = """\
 2 LOAD (0, 0, 60), 0.8
-3 MOVE P1, ZONE 10
+3 MOVE P1 + (0, 40, 0), ZONE 10
 4 FOR I = 1 TO 5
 5 MOVE P1 + (0, 0, 20 * I)
 6 NEXT
