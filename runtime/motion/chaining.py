@@ -14,12 +14,14 @@ from numpy.typing import NDArray
 
 from runtime.core.faults import Fault
 from runtime.core.frames import Array
+from runtime.core.units import badness
 from runtime.motion.cartesian_planner import MovePlan
 from runtime.motion.chain.chain_path import ChainPath
 from runtime.motion.chain.corner import Corner, Rounding, roundings, woven
 from runtime.motion.chain.going_on import Going
 from runtime.motion.chain.paced import AT_REST, OPEN, Beginning, ChainLimits, paced
 from runtime.motion.chain.piece import JointLine, Piece
+from runtime.motion.chain.timing import SLACK
 from runtime.motion.fine_interpolator import through
 from runtime.motion.path_ik import Arm
 from runtime.motion.single import single
@@ -87,6 +89,12 @@ def joined(
     for at, last, rounded in _between_stops(plans, zones, arm):
         opens = more and last == len(plans) - 1
         for run in _runs(plans[at : last + 1], rounded, zones[at:last], arm, limits, OPEN if opens else AT_REST):
+            if rows and rests(setpoints[-1], run.setpoints, limits):
+                q.append(q[-1][-1:])
+                setpoints.append(setpoints[-1][-1:])
+                command.append(command[-1][-1:])
+                share.append(share[-1][-1:])
+                rows += 1
             q.append(run.q[1:])
             setpoints.append(run.setpoints[1:])
             command.append((run.number[1:] + at).astype(np.int32))
@@ -104,6 +112,19 @@ def joined(
         corners=tuple(corners[: len(plans) - 1]),
         tail=tail,
     )
+
+
+def rests(before: Array, after: Array, limits: ChainLimits) -> bool:
+    """Return whether a cycle of rest has to part set-points that stop (N, n) from those that begin there (K, n).
+
+    Each may take the whole jerk of a joint where the arm stands.
+    """
+    around = np.concatenate([before[-4:], after[1:4]])
+    worst = 0.0
+    for limit, power in ((limits.joints.acceleration, 2), (limits.joints.jerk, 3)):
+        steps = np.abs(np.diff(around, power, axis=0)) / (limit * limits.joints.period_s**power)
+        worst = max(worst, float(steps.max(initial=0.0)), key=badness)
+    return not worst <= SLACK
 
 
 class Numbered(TypedDict):

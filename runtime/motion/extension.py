@@ -19,7 +19,7 @@ from runtime.motion.chain.corner import Corner, Rounding, roundings
 from runtime.motion.chain.going_on import LEAD, Going, gone_on
 from runtime.motion.chain.paced import ChainLimits
 from runtime.motion.chain.piece import Piece
-from runtime.motion.chaining import Joined, Tail, corners_of, joined, numbered, piece_of, tail_of
+from runtime.motion.chaining import Joined, Tail, corners_of, joined, numbered, piece_of, rests, tail_of
 from runtime.motion.path_ik import Arm
 
 _LATER = 25
@@ -65,7 +65,7 @@ def extended(
     # what follows a stop begins from rest there, planned as any other row of moves
     rest = plans[len(plans) - len(zones) + count :]
     if rest:
-        grown = _then(grown, zones[count - 1], joined(rest, zones[count:], arm, limits, more=True))
+        grown = _then(grown, zones[count - 1], joined(rest, zones[count:], arm, limits, more=True), limits)
     return replace(grown, **numbered(grown.command, len(plans) - left_out)), left_out
 
 
@@ -85,7 +85,7 @@ def _from_rest(
         lasts=(),
         corners=chain.corners[left_out : tail.move - 1],
     )
-    grown = _then(kept, chain.corners[tail.move - 1].radius, rest)
+    grown = _then(kept, chain.corners[tail.move - 1].radius, rest, limits)
     return replace(grown, **numbered(grown.command, len(plans) - left_out)), left_out
 
 
@@ -144,8 +144,10 @@ def _after_row_0(going: Going, move: int) -> _Rows:
     return {"q": found.q[1:], "setpoints": found.setpoints[1:], "command": command, "share": path.share_at(x)}
 
 
-def _then(first: Joined, zone: float, rest: Joined) -> Joined:
+def _then(first: Joined, zone: float, rest: Joined, limits: ChainLimits) -> Joined:
     """Return a row of moves that stops, and another one from there."""
+    if rests(first.setpoints, rest.setpoints, limits):
+        first = replace(first, **_rows(_part(first, slice(None), 0), _part(first, slice(-1, None), 0)))
     rows, moves = len(first.q) - 1, len(first.corners) + 1
     tail = rest.tail
     if tail is not None:

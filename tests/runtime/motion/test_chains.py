@@ -127,3 +127,15 @@ def test_a_chain_is_parted_where_it_stops():
     assert second.start is chain.ends[2]
     assert len(first.ends) == len(second.ends) == 3
     assert first.alone + second.alone == chain.alone
+
+
+def test_moves_that_stop_one_after_the_other_keep_the_jerk_where_the_arm_stands():
+    """Each takes nearly all of it: a cycle of rest parts two that would pass it together, one pair of these three."""
+    robot, rested = bench("irb2400"), []
+    for seed in (251, 252, 253):
+        run = random_chain(robot, np.random.default_rng(seed), 2)
+        stopping = tuple(replace(each, zone=0.0) for each in run.commands)
+        found = robot.planner.chain(run.start, stopping, TOOL)
+        assert worst_share(robot, found.setpoints, jerk=True) <= SLACK, seed
+        rested.append(len(found.q) - 1 - sum(run.alone))
+    assert rested == [0, 0, 1]
