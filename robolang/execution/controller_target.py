@@ -18,7 +18,7 @@ from robolang.execution.measured import measured
 from robolang.execution.observer import Observer
 from robolang.execution.plan_warnings import PlanWarnings
 from robolang.execution.planned_move import PlannedChain, planned_moves
-from robolang.execution.result import GOES_ON, RunRecord, StatementRun
+from robolang.execution.result import GOES_ON, LAMPS, RunRecord, StatementRun
 from robolang.execution.statement_rows import (
     copied,
     note_plan,
@@ -59,9 +59,6 @@ from runtime.robot.kinematics.kinematics import Kinematics
 from runtime.robot.model.payload import Payload
 
 _NOBODY = Observer()
-
-LAMPS = ("", "WRIST", "WRIST HOLD")
-"""What the lamp shows by ``wrist_mode``."""
 
 
 class ControllerTarget:
@@ -183,8 +180,7 @@ class ControllerTarget:
     def cycle(self) -> bool:
         """Run one cycle of the controller; False when the brakes hold the arm."""
         going = self._record.controller.cycle()
-        if not self.alarms:
-            check_log(self._record)
+        check_log(self._record)
         motion = self._activity
         # after an alarm ``goes_on`` is not called: the move whose set-point was sent last is noted here
         if isinstance(motion, Motion) and self.alarms:
@@ -328,11 +324,13 @@ class ControllerTarget:
     def extend(self, chain: Sequence[Requested], *, more: bool) -> int:
         """Plan moves after those that run; ``Fault`` RBL404 where these cannot go on."""
         controller, motion = self._record.controller, self._activity
-        assert isinstance(motion, Motion)
-        assert motion.open is not None  # else no more is due
-        plan, over = controller.requests.extend(
-            [each.command for each in chain], [each.effect.origin for each in chain]
-        )
+        assert isinstance(motion, Motion) and motion.open is not None  # else no more is due
+        commands, origins = [each.command for each in chain], [each.effect.origin for each in chain]
+        try:
+            plan, over = controller.requests.extend(commands, origins)
+        except Fault:
+            self._activity = replace(motion, open=motion.open.ended_before(chain[0], self.rehearse))
+            raise
         # of the others corners and speeds are those of a stop that does not come
         self._warnings.warn(planned_moves(motion.open, over), controller)
         requested = (*motion.open.requested[over:], *chain)

@@ -265,6 +265,7 @@ class _DryRun(Untimed):
             plan, over = self._plans.extend(planned.plan, at, commands, self._X_flange_tool)
         except Fault:
             # they stop at their end, and the time of the others begins there
+            self._open = planned.ended_before(chain[0], self.rehearse)
             self._pass()
             raise
         starts_us = self._starts_us + (planned.plan.parts[over].first if over else 0) * self._period_us

@@ -7,7 +7,8 @@ def check_log(record: RunRecord) -> None:
     """Raise RBL706 where what was recorded cannot be kept: the arm stops on its path, and nothing is lost."""
     controller = record.controller
     failed, controller.recorder.failed = controller.recorder.failed, None
-    if failed is not None:
+    # while the arm stops it goes on to fail: once is enough, also after the alarm has been acknowledged
+    if failed is not None and not controller.alarms:
         why = failed.strerror or failed
         kept_for = record.kept_for
         without = f", or run without {kept_for}" if kept_for else ""

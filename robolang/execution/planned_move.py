@@ -1,7 +1,7 @@
 """A move with its plan, as what compares plan and program takes it, and what it finds."""
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice
 
 from robolang.execution.target import Requested
@@ -40,18 +40,29 @@ class PlannedMove:
 
 @dataclass(frozen=True, slots=True, kw_only=True)
 class PlannedChain:
-    """Moves as ``requested``, with the ``plan`` of their chain and its ``speeds``."""
+    """Moves as ``requested``, with the ``plan`` of their chain and its ``speeds``.
+
+    ``corner`` at its end and the plan of the next move ``after`` it, which has to begin with a stop; else None.
+    """
 
     requested: tuple[Requested, ...]
     plan: ChainPlan
     speeds: Speeds
+    corner: Corner | None = None
+    after: MovePlan | None = None
+
+    def ended_before(self, following: Requested, plan: Callable[[Array, Command], MovePlan]) -> "PlannedChain":
+        """Return the chain with what becomes of its end: it stops before a move that is to follow without a stop."""
+        # the plan of that move is known: it was rehearsed when it was requested
+        after = plan(self.plan.parts[-1].plan.q[-1], following.command)
+        return replace(self, corner=Corner(radius=self.requested[-1].command.zone), after=after)
 
 
 def planned_moves(planned: PlannedChain, first: int | None = None) -> Iterator[PlannedMove]:
     """Yield the ``first`` moves of a chain that has been planned, all without it."""
     chain, speeds = planned.plan, planned.speeds
-    nexts = [*(part.plan for part in chain.parts[1:]), None]
-    rows = zip(planned.requested, chain.parts, (*chain.corners, None), nexts, strict=True)
+    nexts = [*(part.plan for part in chain.parts[1:]), planned.after]
+    rows = zip(planned.requested, chain.parts, (*chain.corners, planned.corner), nexts, strict=True)
     for number, (each, own, corner, after) in enumerate(islice(rows, first)):
         yield PlannedMove(
             effect=each.effect,

@@ -17,6 +17,8 @@ from runtime.motion.speeds import Speeds
 
 GOES_ON = -1
 """``end_tick`` of a statement that has not ended: tick 0 is one at which a statement may end."""
+LAMPS = ("", "WRIST", "WRIST HOLD")
+"""What the lamp shows by ``wrist_mode``."""
 
 
 @dataclass(slots=True, kw_only=True)

@@ -53,7 +53,7 @@ def _of_speed(move: PlannedMove, speed: float, found: Reached) -> PlanFinding:
     reaches = f"the move reaches {found.reached / MM:.1f} mm/s at most, not"
     if found.programmed is None or found.reached >= REACHED * found.programmed:
         reaches = "the move is slowed below"
-    others = f"with {len(row) - 1} more up to the next stop " if len(row) > 1 else ""
+    others = f"with {len(row) - 1} more in its row " if len(row) > 1 else ""
     takes_s = f"{others}takes {takes:.3f} s instead of {expected:.3f} s"
     return PlanFinding(
         code=CODE,

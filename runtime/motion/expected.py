@@ -29,15 +29,12 @@ class Programmed:
     rise_s: float
 
 
-def expected_s(stretch: Sequence[Programmed], *, moving: bool = False) -> list[float]:
-    """Return the times, s, of moves from a stop to the next one; 0 for those of no programmed speed.
-
-    ``moving``: the first begins with its speed.
-    """
+def expected_s(stretch: Sequence[Programmed], start: float = 0.0) -> list[float]:
+    """Return the times, s, of moves from ``start`` m/s to the next stop; 0 for those of no programmed speed."""
     count = len(stretch)
     # squared speeds at the ends of moves
     most = [min(a.speed, b.speed, key=badness) ** 2 for a, b in itertools.pairwise(stretch)]
-    ends = [stretch[0].speed ** 2 if moving else 0.0, *most, 0.0]
+    ends = [min(start, stretch[0].speed, key=badness) ** 2, *most, 0.0]
     for k in range(count):
         ends[k + 1] = min(ends[k + 1], _gained(ends[k], stretch[k]))
     for k in reversed(range(count)):

@@ -72,11 +72,8 @@ class Interpolator(Stateful):
         row = self.row
         if row is None:
             raise RuntimeError("the rows of the plan do not run")
-        self._rows, self._modes, self._commands = (
-            plan.setpoints,
-            tuple(plan.modes.tolist()),
-            tuple(plan.command.tolist()),
-        )
+        self._rows, self._modes = plan.setpoints, tuple(plan.modes.tolist())
+        self._commands = tuple(plan.command.tolist())
         self._n, self._own = row - left_out, (0, 0)
 
     @property

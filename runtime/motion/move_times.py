@@ -22,6 +22,8 @@ SLOWED = 1.2
 """A move that takes this many times as long as expected is slow. A bead is then a fifth thicker, which shows."""
 _ROUNDING = 1.0 + 1e-6
 """Cycles by which a TIME may be passed."""
+_AT_SPEED = 1.02
+"""A chain that begins with this much less than its speed has it: a ramp of nothing would take the time to build up."""
 _IN_PLACE = 1e-3
 """A tool whose point moves less than this, m, and turns, turns in place: its speed along the path says nothing."""
 
@@ -127,8 +129,17 @@ class MoveTimes:
         return [
             time
             for k, stretch in enumerate(self.stretches)
-            for time in expected_s(moves[stretch.start : stretch.stop], moving=k == 0 and self._chain.moving)
+            for time in expected_s(moves[stretch.start : stretch.stop], self._start_speed if k == 0 else 0.0)
         ]
+
+    @property
+    def _start_speed(self) -> float:
+        """The speed at which the chain begins, m/s along the path of its first move."""
+        path, extent = self._chain.parts[0].path, float(self.extents[0])
+        if not self._chain.moving or path is None or not extent > 0.0:
+            return 0.0
+        # row 0 is one of the move before, whose place on this one is not known
+        return _AT_SPEED * float(np.diff(self.x[:3]).max()) / self.period_s * path.length / extent
 
     def slower(self, k: int) -> float:
         """Return the speed, m/s, without override, that lets a move between two stops expect the time it takes."""

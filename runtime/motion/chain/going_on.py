@@ -1,4 +1,4 @@
-r"""A path that runs, and goes on over more moves, or at other speeds, without a stop.
+"""A path that runs, and goes on over more moves without a stop.
 
 What runs is a ``Going``: a path, and how it was timed up to its end, where the arm would stop. From one of its rows on
 it is timed anew (``gone_on``):
@@ -7,7 +7,7 @@ it is timed anew (``gone_on``):
     grid       the points of the path up to there stay; so do the shares of speed and acceleration that it takes there
     law        that of the motion up to the moment of the change, then the fastest one, with the same mean over T
 
-The motion to the stop is one of those of which the new one is the fastest. Called by ``chaining``; m, rad, s.
+The motion to the stop is one of those of which the new one is the fastest. Called by ``extension``; m, rad, s.
 """
 
 from collections.abc import Sequence
@@ -83,12 +83,11 @@ def gone_on(
     lead: int,
     more: tuple[Sequence[Piece], Sequence[Rounding]],
     limits: ChainLimits,
-    override: float | None = None,
 ) -> tuple[Going, int]:
     """Return the motion that goes on, its row 0 being ``row``, and how many of its first pieces are left out.
 
-    The change is ``lead`` cycles after the row. ``more`` are pieces (J,), and the corner before each of them;
-    ``override`` is that of all pieces from now on, None: theirs. ``Fault`` RBL404 where no timing is found.
+    The change is ``lead`` cycles after the row. ``more`` are pieces (J,), and the corner before each of them. ``Fault``
+    RBL404 where no timing is found.
     """
     found, path, h = going.timed, going.path, limits.joints.period_s
     # what can still be changed: the mean over T carries the rest on
@@ -101,18 +100,15 @@ def gone_on(
     first = int(np.flatnonzero(path.ends[:-1] + halves[:-1] <= found.x[row])[-1])
     offset, last = float(path.ends[first]), float(path.x[at + _MARGIN])
     pieces, roundings = [*path.pieces[first:], *more[0]], [*path.roundings[first:], *more[1]]
-    if more[0]:
-        # the mean over a shorter time would pass the jerk of the new moves
-        if not limits.mean_s(pieces) <= found.mean_s * SLACK:
-            raise Fault("RBL404", "the moves that follow build up their accelerations in a longer time")
-        begun_corners = int(np.count_nonzero(path.ends[1:-1] - halves[1:-1] < last))
-        roundings = woven(pieces, roundings, path.arm, stay=max(begun_corners - first, 0), after=last - offset)
-    if override is not None:
-        pieces = [replace(piece, override=override) for piece in pieces]
+    # the mean over a shorter time would pass the jerk of the new moves
+    if not limits.mean_s(pieces) <= found.mean_s * SLACK:
+        raise Fault("RBL404", "the moves that follow build up their accelerations in a longer time")
+    begun_corners = int(np.count_nonzero(path.ends[1:-1] - halves[1:-1] < last))
+    roundings = woven(pieces, roundings, path.arm, stay=max(begun_corners - first, 0), after=last - offset)
     # in other points of the grid the same path would have other bounds
     kept = with_point(path.x[: at + _MARGIN + 1], seam)
     longer = ChainPath(path.arm, pieces, roundings, kept[kept >= offset] - offset)
-    shares = _shares(found, ends=not more[0], settling_s=found.mean_s + _SETTLING * h)
+    shares = _shares(found, found.mean_s + _SETTLING * h)
     sent = np.concatenate([going.sent, found.setpoints[: row + 1]])[-4:]
     places = going.x[: len(going.before) + row + 1] - offset
     begun = Begun(
@@ -130,10 +126,8 @@ def gone_on(
     return Going(path=longer, timed=found, before=before, sent=sent[:3]), first
 
 
-def _shares(found: Timed, *, ends: bool, settling_s: float) -> Shares:
-    """Return the shares with which a motion goes on: where it does not end as before, without those of its stop."""
-    if ends:
-        return found.shares
+def _shares(found: Timed, settling_s: float) -> Shares:
+    """Return the shares with which a motion goes on: those that it was timed with, without those of its stop."""
     # the last braking begins where the speed falls for the last time
     v, law = found.law.v, found.law
     falls = len(v) - 1 - int(np.argmin(np.append((v[:-1] >= v[1:])[::-1], False)))

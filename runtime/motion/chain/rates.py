@@ -77,21 +77,6 @@ def rates(x: Array, bounds: Bounds, start: float = 0.0, end: float = 0.0) -> Arr
     return found if np.isfinite(reachable).all() and np.isfinite(found).all() else np.full(len(x), np.nan)
 
 
-def raised(x: Array, bounds: Bounds, start: float) -> Bounds:
-    """Return bounds whose largest b leaves room to brake from ``start``, where a path begins faster than they allow."""
-    if not start > bounds.fastest[0]:
-        return bounds
-    span, widths = _range(bounds), 2.0 * np.diff(x)
-    fastest, value = bounds.fastest.copy(), float(start)
-    for k, width in enumerate(widths.tolist()):
-        if not value > fastest[k]:
-            break
-        fastest[k] = value
-        # u as low as the rows allow
-        value += width * float((span.below[k] * value - span.least[k]).max())
-    return bounds.replaced(fastest)
-
-
 def _range(bounds: Bounds) -> _Range:
     """Return the range of u at every point, and the largest b that leaves one."""
     along, across = np.abs(bounds.along), np.copysign(1.0, bounds.along) * bounds.across

@@ -26,7 +26,7 @@ from runtime.core.faults import Fault
 from runtime.core.frames import Array
 from runtime.core.units import badness
 from runtime.motion.chain.bends import bend_speeds
-from runtime.motion.chain.rates import Bounds, raised, rates
+from runtime.motion.chain.rates import Bounds, rates
 from runtime.motion.chain.time_law import TimeLaw, eased, narrow
 from runtime.motion.fine_interpolator import through
 from runtime.motion.velocity_profile import check_duration
@@ -196,7 +196,7 @@ def _timed(path: Path, limits: Limits, begun: Begun) -> Timed:
         check_duration(law.seconds + mean_s)
         found = _along(path, law, limits.period_s, begun, Shares(x=path.x, speed=speed, acceleration=acceleration))
         fast, gaining, jerk = limits.passed(found.setpoints, begun.setpoints[:3])
-        pace = _pace(path, found, limits.period_s, begun)
+        pace = _pace(path, found.x, limits.period_s, begun)
         if max((float(each.max()) for each in (fast, gaining, jerk, pace)), key=badness) <= SLACK:
             return found
         firm = 1.0 if round_ < _FIRMER else 1.0 + 0.25 * (round_ - _FIRMER + 1)
@@ -217,20 +217,17 @@ def _rows(x: Array, begun: Begun) -> Array:
     return np.concatenate([begun.x[:3], x, np.repeat(x[-1:], 3)])
 
 
-def _pace(path: Path, found: Timed, period_s: float, begun: Begun) -> Array:
+def _pace(path: Path, x: Array, period_s: float, begun: Begun) -> Array:
     """Return the share (N + 6,) of the bounds of speed along the path that a motion takes.
 
     The mean over T carries the speed before a narrow place into it.
     """
-    places = _rows(found.x, begun)
+    places = _rows(x, begun)
     most = np.interp(places, path.x, np.sqrt(path.bounds.fastest))
     shares = np.asarray(np.diff(places) / period_s / np.maximum(most[:-1], most[1:]))
     if begun.moves:
-        # a motion that is faster than it may be from now on brakes first, and the mean follows
-        law = found.law
-        faster = np.flatnonzero(law.v**2 > np.interp(law.x, path.x, path.bounds.fastest) * SLACK)
-        slow_s = law.t[min(int(faster.max(initial=0)) + 1, len(law.t) - 1)]
-        shares[: 3 + math.ceil((max(slow_s, begun.law.seconds) + begun.mean_s) / period_s)] = 0.0
+        # what ran before is in the mean
+        shares[: 3 + math.ceil((begun.law.seconds + begun.mean_s) / period_s)] = 0.0
     return shares
 
 
@@ -246,12 +243,11 @@ def _changing(path: Path, places: Array, limits: Limits) -> Array:
 
 def _law(path: Path, bounds: Bounds, begun: Begun) -> TimeLaw:
     start, mean_s = float(begun.law.v[-1]) ** 2, begun.mean_s
-    bounds = raised(path.x, bounds, start)
     b = rates(path.x, bounds, start)
     if mean_s > 0.0:
         low = narrow(path.x, b, mean_s)
         if (low < b).any():
-            b = rates(path.x, raised(path.x, bounds.replaced(np.minimum(bounds.fastest, low)), start), start)
+            b = rates(path.x, bounds.replaced(np.minimum(bounds.fastest, low)), start)
         b = eased(path.x, b, mean_s)
     # it is as fast as it is, whatever can be reached from there
     b[0] = start

@@ -7,10 +7,12 @@ import numpy as np
 import pytest
 
 from robolang.core.diagnostics import Severity
+from robolang.execution import run_bounds
 from robolang.execution.dry_run import rehearse
 from robolang.execution.session import Session
 from robolang.planning.motion_findings import findings
 from robolang.project.project import builtin_cell, load_project
+from runtime.core.faults import Fault
 from runtime.motion.move_times import SLOWED
 from runtime.robot.kinematics.kinematics import Kinematics
 from tests.messages import fields, numbers
@@ -307,3 +309,34 @@ def test_a_zone_says_what_becomes_of_a_point_that_is_doubled_or_returned_from(tm
     assert missed == pytest.approx(corner.deviation * 1e3, abs=0.06)
     assert missed > 1.0
     assert both(tmp_path, text.format("MOVE P + (0, 50, 30)")) == []
+
+
+def in_a_row(count, step, zone, speed, aside=0):
+    """A row of moves, every second one ``aside`` mm of the line."""
+    moves = (f"MOVE A + ({aside * (k % 2)}, {k * step - 60}, 0), ZONE {zone}" for k in range(count))
+    return START.format(0) + f"A = HERE\nSPEED {speed}\nMOVE A + (0, -80, 0)\n" + "\n".join(moves) + "\n"
+
+
+@pytest.fixture
+def few_ahead(monkeypatch):
+    monkeypatch.setattr(run_bounds, "MOST_AHEAD", 16)
+
+
+def test_moves_that_are_planned_ahead_are_not_slow_for_a_stop_that_does_not_come(tmp_path, few_ahead):
+    assert both(tmp_path, in_a_row(80, 2, 2, 300)) == []
+
+
+def test_a_slow_row_that_is_planned_ahead_is_named_as_one_that_is_not(tmp_path, few_ahead):
+    # once, and not for each of its windows
+    assert [code for code, *_ in both(tmp_path, in_a_row(60, 2, 1, 200, aside=3))] == ["RBL429"]
+
+
+def test_a_stop_for_want_of_a_timing_is_named(tmp_path, few_ahead, monkeypatch):
+    def refused(*_):
+        raise Fault("RBL404", "none")
+
+    monkeypatch.setattr("runtime.motion.extension.gone_on", refused)
+    found = both(tmp_path, in_a_row(40, 2, 2, 100))
+    # 16 moves from line 6 on; what could not follow them goes with the next one that blends
+    assert [(code, line) for code, line, _, _ in found] == [("RBL414", 21), ("RBL414", 38)]
+    assert "the arm stops there" in found[0][2]

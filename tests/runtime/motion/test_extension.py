@@ -8,6 +8,9 @@ import pytest
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
 from runtime.motion.commands import MoveLinear
+from runtime.motion.limit_use import Taken, limit_use
+from runtime.motion.motion_planner import ChainPlan
+from runtime.motion.speeds import Speeds
 from tests.campaign import size
 from tests.runtime.motion.chains import Chain, broken, random_chain
 from tests.runtime.motion.motions import TOOL, Bench, bench
@@ -16,7 +19,7 @@ from tests.runtime.motion.windows import windowed
 ROBOTS = ("puma560", "irb2400", "manutec_r3")
 
 
-def circle(robot: Bench, count: int, *, zone: float = 0.004, speed: float = 0.15) -> list[MoveLinear]:
+def circle(robot: Bench, count: int, *, zone: float = 0.012, speed: float = 0.15) -> list[MoveLinear]:
     """Chords of 3.5 mm, round and round on 100 mm."""
     X, angles = robot.tool(robot.home()), np.radians(4.0 * np.arange(1, count + 1))
     offs = 0.05 * np.stack([0.0 * angles, np.sin(angles), 1.0 - np.cos(angles)], axis=1)
@@ -63,6 +66,8 @@ def test_rows_up_to_the_one_that_is_reached_stay_to_the_last_bit():
     assert left_out > 50
     np.testing.assert_array_equal(grown.setpoints[: at - first + 1], plan.setpoints[first : at + 1])
     np.testing.assert_array_equal(grown.command[1 : at - first + 1], plan.command[first + 1 : at + 1] - left_out)
+    # the change comes later, and what is made of the rows before it is the same up to rounding
+    np.testing.assert_allclose(grown.setpoints[at - first :][1:9], plan.setpoints[at:][1:9], rtol=0.0, atol=1e-10)
     assert [part.plan for part in grown.parts[: 150 - left_out]] == [part.plan for part in plan.parts[left_out:]]
     again, _ = robot.planner.extend(plan, at, commands[150:], TOOL)
     assert again.setpoints.tobytes() == grown.setpoints.tobytes()
@@ -119,3 +124,34 @@ def test_nothing_follows_a_stop_without_one():
     for wrong in ([], [commands[39], commands[40]]):
         with pytest.raises(Fault, match="RBL404"):
             robot.planner.extend(plan, plan.tail.more_at, wrong, TOOL)
+
+
+def test_a_chain_that_begins_in_motion_is_judged_without_a_start():
+    robot = bench("puma560")
+    commands = circle(robot, 260)
+    plan = robot.planner.chain(robot.home(), commands[:150], TOOL, more=True)
+    grown, left_out = robot.planner.extend(plan, plan.tail.more_at, commands[150:], TOOL)
+    assert grown.moving
+    times = Speeds(robot.planner, grown, commands[left_out:], TOOL).times
+    chord_s = 2.0 * 0.05 * np.sin(np.radians(2.0)) / 0.15
+    np.testing.assert_allclose(times.expected_s[:20], chord_s, rtol=1e-3)
+    use = {moving: first_cycle(robot, grown, moving=moving) for moving in (True, False)}
+    assert use[True] <= 1.0 < use[False]
+
+
+def first_cycle(robot: Bench, plan: ChainPlan, *, moving: bool) -> float:
+    """The largest share of an acceleration or a jerk that the first cycle of a plan is taken to use."""
+    cycles = np.ones(len(plan.q) - 1)
+    taken = Taken(
+        q=plan.q,
+        setpoints=plan.setpoints,
+        override=cycles,
+        acceleration=3.0 * cycles,
+        turning_speed=cycles,
+        turning_acceleration=cycles,
+        cap=np.inf,
+        X_flange_tool=TOOL,
+        moving=moving,
+    )
+    use = limit_use(taken, robot.kinematics, robot.planner.limits.joints)
+    return float(max(use.joints[1:, 0].max(), use.gaining[0]))
