@@ -89,12 +89,12 @@ def joined(
     for at, last, rounded in _between_stops(plans, zones, arm):
         opens = more and last == len(plans) - 1
         for run in _runs(plans[at : last + 1], rounded, zones[at:last], arm, limits, OPEN if opens else AT_REST):
-            if rows and rests(setpoints[-1], run.setpoints, limits):
-                q.append(q[-1][-1:])
-                setpoints.append(setpoints[-1][-1:])
-                command.append(command[-1][-1:])
-                share.append(share[-1][-1:])
-                rows += 1
+            rest = rest_cycles(setpoints[-1], run.setpoints, limits) if rows else 0
+            q.append(np.repeat(q[-1][-1:], rest, axis=0))
+            setpoints.append(np.repeat(setpoints[-1][-1:], rest, axis=0))
+            command.append(np.repeat(command[-1][-1:], rest))
+            share.append(np.repeat(share[-1][-1:], rest))
+            rows += rest
             q.append(run.q[1:])
             setpoints.append(run.setpoints[1:])
             command.append((run.number[1:] + at).astype(np.int32))
@@ -114,17 +114,21 @@ def joined(
     )
 
 
-def rests(before: Array, after: Array, limits: ChainLimits) -> bool:
-    """Return whether a cycle of rest has to part set-points that stop (N, n) from those that begin there (K, n).
+def rest_cycles(before: Array, after: Array, limits: ChainLimits) -> int:
+    """Return how many cycles of rest, 0 to 2, part set-points that stop (N, n) from those that begin there (K, n).
 
-    Each may take the whole jerk of a joint where the arm stands.
+    Each may take the whole acceleration and jerk of a joint where the arm stands, and both together more than that.
     """
-    around = np.concatenate([before[-4:], after[1:4]])
+    return next((cycles for cycles in (0, 1) if _kept_together(before, cycles, after, limits)), 2)
+
+
+def _kept_together(before: Array, cycles: int, after: Array, limits: ChainLimits) -> bool:
+    around = np.concatenate([before[-4:], np.repeat(before[-1:], cycles, axis=0), after[1:4]])
     worst = 0.0
     for limit, power in ((limits.joints.acceleration, 2), (limits.joints.jerk, 3)):
         steps = np.abs(np.diff(around, power, axis=0)) / (limit * limits.joints.period_s**power)
         worst = max(worst, float(steps.max(initial=0.0)), key=badness)
-    return not worst <= SLACK
+    return worst <= SLACK
 
 
 class Numbered(TypedDict):

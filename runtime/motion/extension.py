@@ -19,7 +19,7 @@ from runtime.motion.chain.corner import Corner, Rounding, roundings
 from runtime.motion.chain.going_on import LEAD, Going, gone_on
 from runtime.motion.chain.paced import ChainLimits
 from runtime.motion.chain.piece import Piece
-from runtime.motion.chaining import Joined, Tail, corners_of, joined, numbered, piece_of, rests, tail_of
+from runtime.motion.chaining import Joined, Tail, corners_of, joined, numbered, piece_of, rest_cycles, tail_of
 from runtime.motion.path_ik import Arm
 
 _LATER = 25
@@ -146,7 +146,7 @@ def _after_row_0(going: Going, move: int) -> _Rows:
 
 def _then(first: Joined, zone: float, rest: Joined, limits: ChainLimits) -> Joined:
     """Return a row of moves that stops, and another one from there."""
-    if rests(first.setpoints, rest.setpoints, limits):
+    for _ in range(rest_cycles(first.setpoints, rest.setpoints, limits)):
         first = replace(first, **_rows(_part(first, slice(None), 0), _part(first, slice(-1, None), 0)))
     rows, moves = len(first.q) - 1, len(first.corners) + 1
     tail = rest.tail

@@ -7,6 +7,7 @@ import pytest
 
 from runtime.core.faults import Fault
 from runtime.core.frames import pose
+from runtime.motion.chaining import rest_cycles
 from runtime.motion.commands import MoveLinear
 from tests.campaign import size
 from tests.runtime.motion.chains import (
@@ -139,3 +140,17 @@ def test_moves_that_stop_one_after_the_other_keep_the_jerk_where_the_arm_stands(
         assert worst_share(robot, found.setpoints, jerk=True) <= SLACK, seed
         rested.append(len(found.q) - 1 - sum(run.alone))
     assert rested == [0, 0, 1]
+
+
+@pytest.mark.parametrize(("turn", "cycles"), [(1.0, 2), (-1.0, 0), (0.1, 2)])
+def test_as_many_cycles_of_rest_part_two_moves_as_their_jerks_need(turn, cycles):
+    """Steps of 6, 3 and 1 jerks and back are those of a whole jerk, to a stop and from it."""
+    limits = bench("irb2400").planner.limits
+    step = limits.joints.jerk * limits.joints.period_s**3
+    braking = np.array([0.0, 6.0, 9.0, 10.0])[:, None] * step
+    begins = braking[-1] + turn * np.array([0.0, 1.0, 4.0, 10.0])[:, None] * step
+    assert rest_cycles(braking, begins, limits) == cycles
+    assert rest_cycles(braking, begins * np.nan, limits) == 2
+    rests = np.repeat(braking[-1:], cycles, axis=0)
+    worst = np.abs(np.diff(np.concatenate([braking, rests, begins[1:]]), 3, axis=0) / step).max()
+    assert worst <= 1.0 + 1e-9

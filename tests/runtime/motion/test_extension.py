@@ -6,8 +6,10 @@ import numpy as np
 import pytest
 
 from runtime.core.faults import Fault
-from runtime.core.frames import pose
+from runtime.core.frames import Array, pose
+from runtime.motion.chaining import Joined
 from runtime.motion.commands import MoveLinear
+from runtime.motion.extension import _then
 from runtime.motion.limit_use import Taken, limit_use
 from runtime.motion.motion_planner import ChainPlan
 from runtime.motion.speeds import Speeds
@@ -155,3 +157,27 @@ def first_cycle(robot: Bench, plan: ChainPlan, *, moving: bool) -> float:
     )
     use = limit_use(taken, robot.kinematics, robot.planner.limits.joints)
     return float(max(use.joints[1:, 0].max(), use.gaining[0]))
+
+
+def test_a_stop_before_what_follows_lasts_as_long_as_the_jerks_need():
+    limits = bench("irb2400").planner.limits
+    step = limits.joints.jerk * limits.joints.period_s**3
+    braking = np.array([0.0, 6.0, 9.0, 10.0])[:, None] * step
+    first, rest = rows_of(braking), rows_of(braking[-1] + braking[-1] - braking[::-1])
+    found = _then(first, 0.0, rest, limits)
+    assert len(found.setpoints) == 4 + 2 + 3
+    assert found.command.tolist() == [0, 0, 0, 0, 0, 0, 1, 1, 1]
+    assert np.abs(np.diff(found.setpoints, 3, axis=0) / step).max() <= 1.0 + 1e-9
+
+
+def rows_of(setpoints: Array) -> Joined:
+    """One move with these set-points."""
+    count = len(setpoints)
+    return Joined(
+        q=setpoints,
+        setpoints=setpoints,
+        command=np.zeros(count, dtype=np.int32),
+        share=np.ones(count),
+        lasts=(count - 1,),
+        corners=(),
+    )
