@@ -14,7 +14,7 @@ def blocks_of(page: str) -> list[str]:
     return re.findall(r"^```sh\n(.*?)^```", (_DOCS / f"{page}.md").read_text("utf-8"), re.M | re.S)
 
 
-def follow(commands: str, folder: Path) -> None:
+def assert_carried_out(commands: str, folder: Path) -> None:
     """Carry commands out in a folder, one after another; one that fails is an error."""
     path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
     subprocess.run(["bash", "-eu", "-c", commands], cwd=folder, env={**os.environ, "PATH": path}, check=True)

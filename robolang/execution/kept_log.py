@@ -7,7 +7,6 @@ def check_log(record: RunRecord) -> None:
     """Raise RBL706 where what was recorded cannot be kept: the arm stops on its path, and nothing is lost."""
     controller = record.controller
     failed, controller.recorder.failed = controller.recorder.failed, None
-    # while the arm stops it goes on to fail: once is enough, also after the alarm has been acknowledged
     if failed is not None and not controller.alarms:
         why = failed.strerror or failed
         kept_for = record.kept_for

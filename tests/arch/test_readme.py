@@ -91,10 +91,10 @@ NOTHING_TO_HOLD_AGAINST = {"No safety function", "Seams"}
 """What the product is for, and what nobody can know before a move."""
 
 
-@pytest.mark.parametrize("check", CHECKS, ids=lambda check: check.__name__)
-def test_a_limit_that_the_readme_states_is_one(check, tmp_path):
-    lead = check.__name__.replace("_", " ").capitalize()
-    check(LIMITS[lead], tmp_path)
+@pytest.mark.parametrize("assert_limit", CHECKS, ids=lambda check: check.__name__)
+def test_a_limit_that_the_readme_states_is_one(assert_limit, tmp_path):
+    lead = assert_limit.__name__.replace("_", " ").capitalize()
+    assert_limit(LIMITS[lead], tmp_path)
 
 
 def test_every_limit_has_its_check():

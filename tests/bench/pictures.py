@@ -15,7 +15,7 @@ from PIL import Image
 
 from robolang.__main__ import main
 from tests.bench.corner_picture import corners
-from tests.pages import blocks_of, follow
+from tests.pages import assert_carried_out, blocks_of
 from tests.robolang.view.browser import Tab, chromium
 
 FOLDER = Path(__file__).parents[2] / "docs" / "pictures"
@@ -147,7 +147,7 @@ def corner(work: Path) -> None:
 
 def tutorial(work: Path) -> None:
     """The job of the tutorial after its last step, by the commands of the page itself."""
-    follow("".join(blocks_of("tutorial")), work)
+    assert_carried_out("".join(blocks_of("tutorial")), work)
     shutil.copy(work / "out" / "tutorial" / "post.png", FOLDER / "tutorial.png")
 
 

@@ -3,7 +3,7 @@
 import pytest
 
 from tests.campaign import WHOLE
-from tests.pages import blocks_of, follow
+from tests.pages import assert_carried_out, blocks_of
 
 # a run, a picture and a check of the motion take seconds each; what makes and changes the files does not
 _QUICK = ("robolang new", "robolang teach", "robolang fmt", "sed", "printf", "rm")
@@ -11,7 +11,7 @@ _QUICK = ("robolang new", "robolang teach", "robolang fmt", "sed", "printf", "rm
 
 def test_the_files_of_the_tutorial_are_those_that_its_ci_accepts(tmp_path):
     lines = [line for block in blocks_of("tutorial") for line in block.splitlines()]
-    follow("\n".join(line for line in lines if line.startswith(_QUICK)), tmp_path)
+    assert_carried_out("\n".join(line for line in lines if line.startswith(_QUICK)), tmp_path)
     for command in ("robolang new", "robolang fmt --check"):
         assert any(line.startswith(command) for line in lines)
     # what the workflow runs is what the page runs
@@ -25,4 +25,4 @@ def test_the_files_of_the_tutorial_are_those_that_its_ci_accepts(tmp_path):
 @pytest.mark.physics
 @pytest.mark.skipif(not WHOLE, reason="a minute; CAMPAIGN=1 runs it")
 def test_every_command_of_the_tutorial_is_carried_out(tmp_path):
-    follow("".join(blocks_of("tutorial")), tmp_path)
+    assert_carried_out("".join(blocks_of("tutorial")), tmp_path)

@@ -103,7 +103,7 @@ def accused(marked):
     return marked.replace("«", "").replace("»", ""), start, end
 
 
-def check(body, nesting, first):
+def assert_placed(body, nesting, first):
     body = body if "«" in body else f"«{body}»"
     text = HEAD + NESTINGS[nesting].format(body) + TAIL
     text, start, end = accused(text if first is None else numbered(text, first))
@@ -127,7 +127,7 @@ def test_the_place_is_inside_the_statement_that_failed(nesting, first):
     inapplicable = {"handler": {"RESUME"}}.get(nesting, set())
     for body in STATEMENTS + BLOCKS:
         if body not in inapplicable:
-            check(body, nesting, first)
+            assert_placed(body, nesting, first)
 
 
 def test_every_call_on_the_chain_is_named_outermost_first():

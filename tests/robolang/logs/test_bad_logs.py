@@ -55,7 +55,7 @@ def test_a_log_that_is_torn_at_any_byte_is_refused(good, tmp_path):
     data, path = good.read_bytes(), tmp_path / "t.npz"
     for length in {*range(0, len(data), size(7, 211)), *range(len(data) - size(2500, 60), len(data))}:
         path.write_bytes(data[:length])
-        refused(path, "RBL619")
+        assert refused(path, "RBL619")
 
 
 def test_a_log_with_a_changed_byte_is_refused_or_gives_what_was_written(good, expected, tmp_path):
@@ -113,7 +113,7 @@ def test_a_log_that_is_replaced_while_it_is_open_stays_what_it_was(good, expecte
     ],
 )
 def test_what_a_log_states_is_compared_before_it_is_believed(name, code):
-    refused(FOLDER / "log" / f"{name}.npz", code)
+    assert refused(FOLDER / "log" / f"{name}.npz", code)
 
 
 def changed_meta(path: Path, **changes: object) -> Path:
@@ -142,7 +142,7 @@ def changed_meta(path: Path, **changes: object) -> Path:
     ids=str,
 )
 def test_a_meta_of_another_form_is_refused(tmp_path, changes):
-    refused(changed_meta(tmp_path / "m.npz", **changes), "RBL619")
+    assert refused(changed_meta(tmp_path / "m.npz", **changes), "RBL619")
 
 
 @pytest.mark.parametrize(("axes", "taken"), [(7, True), (8, False), (2000, False)])
@@ -156,7 +156,7 @@ def test_a_packed_meta_is_not_unpacked_beyond_its_bound(tmp_path, monkeypatch):
     monkeypatch.setattr("robolang.logs.archive.MOST_PACKED", 5000)
     made = changed_meta(tmp_path / "m.npz", program={"name": "p.rbl", "text": "x" * 5000})
     assert made.stat().st_size < 30_000
-    refused(made, "RBL619")
+    assert refused(made, "RBL619")
 
 
 @pytest.mark.parametrize("numbers", [np.array([0.5, np.nan]), np.array([np.inf, 0.5])], ids=["nan", "infinite"])
@@ -197,7 +197,7 @@ def test_a_list_is_not_read_by_the_end_of_a_large_file_either(tmp_path, monkeypa
     with zipfile.ZipFile(path) as read:
         assert len(read.namelist()) == 3000
     monkeypatch.setattr(zipfile, "ZipFile", None)  # it is not even begun
-    refused(path, "RBL619")
+    assert refused(path, "RBL619")
 
 
 @pytest.mark.parametrize("length", [22, 41, 42, 60, 97])
@@ -205,4 +205,4 @@ def test_an_end_of_a_large_file_that_is_torn_is_refused(tmp_path, length):
     path = tmp_path / "t.npz"
     tail = struct.pack("<4sLQL", b"PK\6\7", 0, 0, 1) + struct.pack("<4s4H2LH", b"PK\5\6", 0, 0, 0, 0, 0, 0, 0)
     path.write_bytes((bytes(100) + tail)[-length:])
-    refused(path, "RBL619")
+    assert refused(path, "RBL619")

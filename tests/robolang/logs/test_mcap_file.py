@@ -115,12 +115,13 @@ def refused(path, code="RBL619"):
         read_log(path)
     assert caught.value.code == code
     assert str(path) in caught.value.message
+    return caught.value
 
 
 def test_a_file_that_cannot_be_read(tmp_path):
-    refused(tmp_path / "absent.mcap", "RBL600")
+    assert refused(tmp_path / "absent.mcap", "RBL600")
     (tmp_path / "folder.mcap").mkdir()
-    refused(tmp_path / "folder.mcap", "RBL600")
+    assert refused(tmp_path / "folder.mcap", "RBL600")
 
 
 def test_a_torn_file_is_refused_wherever_it_ends(tmp_path):
@@ -179,11 +180,11 @@ META = b'{"format": 3}'
 
 
 def test_a_file_without_meta_or_of_another_version(tmp_path):
-    refused(mcap(tmp_path / "a.mcap", lambda writer: None), "RBL820")
-    refused(mcap(tmp_path / "b.mcap", lambda writer: add_samples(writer, [b""])), "RBL820")
-    refused(mcap(tmp_path / "c.mcap", lambda writer: add_meta(writer, META)), "RBL821")
-    refused(mcap(tmp_path / "d.mcap", lambda writer: add_meta(writer, b"[" * 100_000)))
-    refused(mcap(tmp_path / "e.mcap", lambda writer: add_meta(writer, b'{"format": 2}')))
+    assert refused(mcap(tmp_path / "a.mcap", lambda writer: None), "RBL820")
+    assert refused(mcap(tmp_path / "b.mcap", lambda writer: add_samples(writer, [b""])), "RBL820")
+    assert refused(mcap(tmp_path / "c.mcap", lambda writer: add_meta(writer, META)), "RBL821")
+    assert refused(mcap(tmp_path / "d.mcap", lambda writer: add_meta(writer, b"[" * 100_000)))
+    assert refused(mcap(tmp_path / "e.mcap", lambda writer: add_meta(writer, b'{"format": 2}')))
 
 
 def with_meta(rows, **channel):
@@ -203,7 +204,7 @@ def row(**fields):
 
 @pytest.mark.parametrize("rows", [[row()], [row(q_fb=[0.0] * 5)], [b"\x07"], [b""]])
 def test_rows_that_do_not_go_together_are_refused(tmp_path, rows):
-    refused(mcap(tmp_path / "l.mcap", with_meta(rows)))
+    assert refused(mcap(tmp_path / "l.mcap", with_meta(rows)))
 
 
 @pytest.mark.parametrize("channel", [{"topic": "/other"}, {"name": "other.Sample"}])
@@ -213,7 +214,7 @@ def test_what_is_not_ours_is_left_out(tmp_path, channel):
 
 
 def test_other_packing_is_refused(tmp_path):
-    refused(mcap(tmp_path / "l.mcap", with_meta([row()]), compression=CompressionType.LZ4))
+    assert refused(mcap(tmp_path / "l.mcap", with_meta([row()]), compression=CompressionType.LZ4))
 
 
 def unpacks_nothing(monkeypatch):
@@ -229,10 +230,10 @@ def test_a_large_record_is_refused_before_it_is_read_or_unpacked(tmp_path, monke
     data = path.read_bytes()
     at = 8 + 9 + int.from_bytes(data[9:17], "little")  # the record after the header
     path.write_bytes(data[: at + 1] + (2**63).to_bytes(8, "little") + data[at + 9 :])
-    refused(path)
+    assert refused(path)
     monkeypatch.setattr(mcap_reading, "MOST_RECORD", len(data) - 1000)
     path.write_bytes(data)
-    refused(path)
+    assert refused(path)
 
 
 def test_all_rows_together_are_bounded(tmp_path, monkeypatch):
@@ -241,7 +242,7 @@ def test_all_rows_together_are_bounded(tmp_path, monkeypatch):
     monkeypatch.setattr(mcap_reading, "MOST_BYTES", size)
     assert read_log(path).count("t") == 100
     monkeypatch.setattr(mcap_reading, "MOST_BYTES", size - 1)
-    refused(path)
+    assert refused(path)
 
 
 def test_a_chunk_that_unpacks_to_more_than_it_says_is_refused(tmp_path, monkeypatch):
@@ -250,7 +251,7 @@ def test_a_chunk_that_unpacks_to_more_than_it_says_is_refused(tmp_path, monkeypa
     monkeypatch.setattr(zstandard, "compress", lambda data: pack(bytes(data) + b"\0" * 1_000_000))
     path = mcap(tmp_path / "l.mcap", with_meta([row()]))
     unpacks_nothing(monkeypatch)
-    refused(path)
+    assert refused(path)
 
 
 @pytest.mark.parametrize("at_once", [1, 10_000])

@@ -48,7 +48,7 @@ def done_again(prompted: Prompted, path: str, *, physics: bool = False) -> tuple
     return log, result.log
 
 
-def same_log(logs: tuple[Log, Log]) -> None:
+def assert_same_log(logs: tuple[Log, Log]) -> None:
     one, other = logs
     differs = [name for name in one if name not in OF_THE_TEXT and one[name].tobytes() != other[name].tobytes()]
     assert differs == []

@@ -28,7 +28,7 @@ def _of_run(program: Path, folder: Path, *words: str) -> tuple[bytes, dict]:
     return log.read_bytes(), json.loads(report.read_text())
 
 
-def _same_files(program: Path, folder: Path, *, physics: bool) -> None:
+def _assert_same_files(program: Path, folder: Path, *, physics: bool) -> None:
     words = () if physics else ("--no-physics",)
     log, report = folder / "prompt.npz", folder / "prompt.json"
     # a move before ``again`` leaves no trace
@@ -45,13 +45,13 @@ def _same_files(program: Path, folder: Path, *, physics: bool) -> None:
 
 @pytest.mark.parametrize("program", PROGRAMS, ids=_names)
 def test_run_at_the_prompt_is_that_of_the_command(program, tmp_path):
-    _same_files(program, tmp_path, physics=False)
+    _assert_same_files(program, tmp_path, physics=False)
 
 
 @pytest.mark.physics
 @pytest.mark.parametrize("program", some(PHYSICS, 1), ids=_names)
 def test_run_with_physics_at_the_prompt_is_that_of_the_command(program, tmp_path):
-    _same_files(program, tmp_path, physics=True)
+    _assert_same_files(program, tmp_path, physics=True)
 
 
 def test_writing_changes_nothing_of_what_follows(tmp_path):

@@ -12,7 +12,7 @@ from robolang.pendant.script import play
 from robolang.teaching.recorded import recorded
 from tests.campaign import examples
 from tests.robolang.pendant.prompting import Requests, prompt
-from tests.robolang.pendant.recordings import PICK, done_again, same_log, statements, tolerant
+from tests.robolang.pendant.recordings import PICK, assert_same_log, done_again, statements, tolerant
 
 
 @pytest.fixture(autouse=True)
@@ -66,7 +66,7 @@ def test_whatever_was_done_is_done_again(lines, tmp_path_factory):
     folder = tmp_path_factory.mktemp("random")
     prompted = prompt(tolerant(PICK, folder))
     play(io.StringIO("\n".join(["auto", f"record {folder / 'done'}", *lines])), prompted.pendant, keep_going=True)
-    same_log(done_again(prompted, str(folder / "done.rbl")))
+    assert_same_log(done_again(prompted, str(folder / "done.rbl")))
 
 
 def test_a_long_recording_is_made_in_linear_time(folder):

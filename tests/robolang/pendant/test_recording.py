@@ -20,7 +20,7 @@ from tests.campaign import some
 from tests.programs.runs import some_programs
 from tests.robolang.cli.commands import ROOT, robolang
 from tests.robolang.pendant.prompting import Requests, prompt
-from tests.robolang.pendant.recordings import PICK, done_again, same_log, statements, tolerant
+from tests.robolang.pendant.recordings import PICK, assert_same_log, done_again, statements, tolerant
 from tests.steps import HANG_S
 
 PROGRAMS = some_programs("recover", "tend", "seam")
@@ -42,14 +42,14 @@ def _environment() -> dict[str, str]:
 def test_a_program_is_done_again_to_the_byte(program):
     prompted = prompt(program)
     prompted.do("record again.rbl", "run")
-    same_log(done_again(prompted, "again.rbl"))
+    assert_same_log(done_again(prompted, "again.rbl"))
 
 
 @pytest.mark.physics
 def test_a_program_is_done_again_with_physics():
     prompted = prompt(PICK, physics=True)
     prompted.do("record again.rbl", "auto", "MOVE P2, SPEED 150", "MOVE P5", "run")
-    same_log(done_again(prompted, "again.rbl", physics=True))
+    assert_same_log(done_again(prompted, "again.rbl", physics=True))
 
 
 MIXED = {
@@ -134,7 +134,7 @@ def test_the_values_stand_in_the_statements():
         "ACCEL 50",
         "DEPART 3, SPEED 200",
     ]
-    same_log(done_again(prompted, "done.rbl"))
+    assert_same_log(done_again(prompted, "done.rbl"))
 
 
 def test_each_line_says_where_it_comes_from():
@@ -165,7 +165,7 @@ def test_a_statement_in_the_middle_of_a_wait_divides_it(folder):
     assert found[5] == "LOAD (0, 0, 60), 0.8"
     assert float(found[6].removeprefix("DELAY ")) == pytest.approx(0.8 - hand)
     assert found[7:] == ["MOVE P2"]
-    same_log(done_again(prompted, "done.rbl"))
+    assert_same_log(done_again(prompted, "done.rbl"))
 
 
 ARC = "MOVEC P2 + (0, 0, 40), P2 + (0, 80, 0), SPEED 100"
@@ -235,7 +235,7 @@ def test_what_is_taken_back_is_taken_out():
     assert statements("done.rbl")[-1] == "LOAD (0, 0, 60), 0.8"
     timeline.back()
     prompted.do("run")
-    same_log(done_again(prompted, "done.rbl"))
+    assert_same_log(done_again(prompted, "done.rbl"))
 
 
 def test_again_begins_anew_and_a_recording_that_ended_is_left():
@@ -287,7 +287,7 @@ def test_the_cell_stands_beside_it_where_it_is_not_found_anyway(folder, where):
     prompted.do(f"record {path}", "auto", "run", "MOVE POSE(480, 0, 840, 180, 0, -135)")
     assert own_cell(path).exists() == (where not in ("folder", "built-in"))
     assert load_project(path).cell.hand.dwell == (0.3 if where.startswith("built-in") else 0.4)
-    same_log(done_again(prompted, str(path)))
+    assert_same_log(done_again(prompted, str(path)))
 
 
 @pytest.mark.parametrize(

@@ -83,6 +83,7 @@ def test_completion_shows_points_with_their_meaning_and_enter_carries_out(termin
     terminal.until_gone("ACCEL")
     terminal.send("\t 250\r")
     terminal.until("> MOVE P4, SPEED 250", "XYZ 480.0 220.0 840.0")
+    assert terminal.shows("XYZ 480.0 220.0 840.0")
 
 
 def test_ctrl_c_clears_the_line_and_keeps_the_prompt(terminal):
@@ -105,6 +106,7 @@ def test_a_block_is_typed_over_several_lines(terminal):
     terminal.send("\x03")
     terminal.send("1 + 41\r")
     terminal.until("42")
+    assert terminal.shows("42")
 
 
 def test_a_paste_is_carried_out_line_by_line_up_to_the_first_error(terminal):
