@@ -178,7 +178,7 @@ class Followed(Machine):
         self.seen["print"][at].add(self.printed)
         self.seen["hand"][at].add(self.hand)
 
-    def assert_carried_out(self):
+    def follow(self):
         """Run to the end, or until it has been long enough."""
         try:
             while not isinstance(event := self.step(), Done | Failed):
@@ -236,7 +236,7 @@ def assert_sound(text, chance):
     said = {(item.code, text.count("\n", 0, item.span.start) + 1) for item in found}
     for _ in range(RUNS):
         choices = [chance.random() < 0.5 for _ in range(MOST_LINES)]
-        run = Followed(program, Inputs(chance), Ways(program, choices)).assert_carried_out()
+        run = Followed(program, Inputs(chance), Ways(program, choices)).follow()
         for name, seen in run.seen.items():
             if facts[name] is not None:
                 for at, true in seen.items():
@@ -267,7 +267,7 @@ def every_run(program):
         choices = todo.pop()
         runs += 1
         ways = Ways(program, choices)
-        run = Followed(program, Still(), ways).assert_carried_out()
+        run = Followed(program, Still(), ways).follow()
         if run.lines > MOST_LINES or runs > MOST_WAYS:
             return None
         todo += [[*choices, *[False] * (k - len(choices)), True] for k in range(len(choices), ways.asked)]

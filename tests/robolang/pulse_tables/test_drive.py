@@ -100,7 +100,7 @@ def test_a_straight_line_is_driven_straight(tmp_path):
     kinematics, q = Kinematics(CELL.robot), np.array(HOME) * PER_PULSE * DEG
     X = np.tile(kinematics.forward(q), (STEPS, 1, 1))
     X[:, 1, 3] += [0.08 * way(k) for k in range(1, STEPS + 1)]
-    targets = np.rint(kinematics.newton.assert_carried_out(X, q) / DEG / PER_PULSE).astype(int)
+    targets = np.rint(kinematics.newton.follow(X, q) / DEG / PER_PULSE).astype(int)
     begin = tool_mm()
     export.move(
         2,

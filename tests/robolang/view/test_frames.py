@@ -46,7 +46,7 @@ def shown(program, physics, monkeypatch):
     kept = Kept()
     frames = Frames(kept)
     session = Session(load_project(program), physics=physics, observer=frames)
-    frames.assert_carried_out(session)
+    frames.follow(session)
     log = session.run().log
     names = layout(session.controller)
     rows = np.array([np.frombuffer(frame[8:], "<f4") for frame in kept.frames])
