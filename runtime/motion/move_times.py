@@ -81,7 +81,7 @@ class MoveTimes:
         rows = np.arange(len(self.x), dtype=np.float64)
         bounds = np.interp(self.ends, self.x, rows)
         # moves that end where they start have no rows of their own
-        bounds[0], bounds[-1] = 0.0, rows[-1]
+        bounds[0], bounds[-1] = self._first_begins, rows[-1]
         return tuple(map(self._span, self._chain.parts, bounds[:-1].tolist(), bounds[1:].tolist()))
 
     def _span(self, part: Part, begins: float, ends: float) -> Span:
@@ -138,8 +138,20 @@ class MoveTimes:
         path, extent = self._chain.parts[0].path, float(self.extents[0])
         if not self._chain.moving or path is None or not extent > 0.0:
             return 0.0
+        return _AT_SPEED * self._first_step / self.period_s * path.length / extent
+
+    @property
+    def _first_step(self) -> float:
+        """The length, m, of the first cycles of a chain that begins in motion."""
         # row 0 is one of the move before, whose place on this one is not known
-        return _AT_SPEED * float(np.diff(self.x[:3]).max()) / self.period_s * path.length / extent
+        return float(np.diff(self.x[:3]).max())
+
+    @property
+    def _first_begins(self) -> float:
+        """The continuous cycle at which the first move begins."""
+        if not self._chain.moving or not self._first_step > 0.0:
+            return 0.0
+        return float(np.clip(1.0 - self.x[1] / self._first_step, 0.0, 1.0))
 
     def slower(self, k: int) -> float:
         """Return the speed, m/s, without override, that lets a move between two stops expect the time it takes."""
